@@ -1,0 +1,36 @@
+# One library a room. A room links only the rooms it may know (docs: ARCHITECTURE.md), so the linker
+# enforces the table; tools/check_includes.py enforces it for headers.
+
+add_library(ejecta_options INTERFACE)
+target_include_directories(ejecta_options INTERFACE ${PROJECT_SOURCE_DIR}/src)
+# No -ffast-math: NaN must stay detectable and sums must keep their order.
+target_compile_options(ejecta_options INTERFACE -Wall -Wextra -Wpedantic -march=native -fno-math-errno
+                       -fno-trapping-math)
+target_link_libraries(ejecta_options INTERFACE fmt::fmt Eigen3::Eigen OpenMP::OpenMP_CXX)
+target_compile_definitions(ejecta_options INTERFACE EIGEN_DONT_PARALLELIZE)
+if(EJECTA_DOUBLE)
+  target_compile_definitions(ejecta_options INTERFACE EJECTA_DOUBLE)
+endif()
+if(EJECTA_SANITIZE)
+  target_compile_options(ejecta_options INTERFACE -fsanitize=${EJECTA_SANITIZE} -fno-sanitize-recover=all
+                         -fno-omit-frame-pointer -g)
+  target_link_options(ejecta_options INTERFACE -fsanitize=${EJECTA_SANITIZE})
+endif()
+
+# ejecta_room(flow USES base case grid [LIBS hdf5...])
+function(ejecta_room name)
+  cmake_parse_arguments(ROOM "" "" "USES;LIBS" ${ARGN})
+  file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/src/${name}/*.cpp)
+  list(FILTER sources EXCLUDE REGEX "/app/main\\.cpp$")
+  if(sources)
+    add_library(ejecta_${name} STATIC ${sources})
+    set(scope PUBLIC)
+  else()
+    add_library(ejecta_${name} INTERFACE)
+    set(scope INTERFACE)
+  endif()
+  target_link_libraries(ejecta_${name} ${scope} ejecta_options ${ROOM_LIBS})
+  foreach(room ${ROOM_USES})
+    target_link_libraries(ejecta_${name} ${scope} ejecta_${room})
+  endforeach()
+endfunction()

@@ -1,0 +1,93 @@
+#pragma once
+#include <cstddef>
+#include <limits>
+#include <vector>
+
+#include "base/real.hpp"
+
+/// The only place that knows how loops run. A kernel is a small functor over plain views: no allocation,
+/// no virtual call, no container inside. Loops run over planes of constant k in parallel and over i in SIMD.
+namespace ejecta {
+
+/// Half-open index box [i0,i1) x [j0,j1) x [k0,k1).
+struct Range3 {
+  int i0 = 0, i1 = 0, j0 = 0, j1 = 0, k0 = 0, k1 = 0;
+};
+
+int thread_count();
+void set_thread_count(int threads);
+
+/// kernel(i, j, k) for every cell; any order, no dependence between cells.
+template <class Kernel>
+void for_each_cell(const Range3& r, const Kernel& kernel) {
+#pragma omp parallel for schedule(static)
+  for (int k = r.k0; k < r.k1; ++k)
+    for (int j = r.j0; j < r.j1; ++j) {
+#pragma omp simd
+      for (int i = r.i0; i < r.i1; ++i) kernel(i, j, k);
+    }
+}
+
+/// kernel(n) for n in [0, count), e.g. one plane, one row, one body at a time.
+template <class Kernel>
+void for_each_index(int count, const Kernel& kernel) {
+#pragma omp parallel for schedule(static)
+  for (int n = 0; n < count; ++n) kernel(n);
+}
+
+/// As for_each_index, for iterations of very different cost.
+template <class Kernel>
+void for_each_index_dynamic(int count, const Kernel& kernel) {
+#pragma omp parallel for schedule(dynamic, 16)
+  for (int n = 0; n < count; ++n) kernel(n);
+}
+
+namespace detail {
+std::vector<double>& partial_sums(int count);  // scratch kept between calls: a step allocates nothing
+}
+
+/// Sum of kernel(i, j, k) in double. Every row is summed in SIMD lanes of fixed width, rows and planes in
+/// order: the same bits for any number of threads.
+template <class Kernel>
+double reduce_sum(const Range3& r, const Kernel& kernel) {
+  if (r.k1 <= r.k0) return 0.0;
+  std::vector<double>& planes = detail::partial_sums(r.k1 - r.k0);
+#pragma omp parallel for schedule(static)
+  for (int k = r.k0; k < r.k1; ++k) {
+    double plane = 0.0;
+    for (int j = r.j0; j < r.j1; ++j) {
+      double row = 0.0;
+#pragma omp simd reduction(+ : row)
+      for (int i = r.i0; i < r.i1; ++i) row += static_cast<double>(kernel(i, j, k));
+      plane += row;
+    }
+    planes[static_cast<std::size_t>(k - r.k0)] = plane;
+  }
+  double sum = 0.0;
+  for (int n = 0; n < r.k1 - r.k0; ++n) sum += planes[static_cast<std::size_t>(n)];
+  return sum;
+}
+
+/// Largest kernel(i, j, k), at least `floor`. NaN propagates: a NaN anywhere gives NaN.
+template <class Kernel>
+Real reduce_max(const Range3& r, Real floor, const Kernel& kernel) {
+  Real result = floor;
+  bool nan = false;
+#pragma omp parallel for schedule(static) reduction(max : result) reduction(|| : nan)
+  for (int k = r.k0; k < r.k1; ++k)
+    for (int j = r.j0; j < r.j1; ++j) {
+      Real row = floor;
+      int bad = 0;
+#pragma omp simd reduction(max : row) reduction(| : bad)
+      for (int i = r.i0; i < r.i1; ++i) {
+        const Real v = kernel(i, j, k);
+        row = v > row ? v : row;
+        bad |= !(v == v);
+      }
+      result = row > result ? row : result;
+      nan = nan || bad;
+    }
+  return nan ? std::numeric_limits<Real>::quiet_NaN() : result;
+}
+
+}  // namespace ejecta

@@ -1,0 +1,329 @@
+#pragma once
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/vec.hpp"
+
+/// What the user wrote, as plain structs in SI units. No behaviour. The schema (case/schema.cpp) is the only
+/// place that knows the keys of the TOML file; everybody else reads these structs.
+/// A member `foo_bar` of struct `Grid` under `Case::grid` is the key `grid.foo_bar`.
+namespace ejecta {
+
+enum class FlowSolver { none, incompressible, compressible, compressible_piso };
+enum class TurbulenceModel { laminar, k_epsilon, k_omega_sst };
+enum class Geometry { cartesian, axisymmetric };
+enum class BoundaryType {
+  velocity, total_pressure, pressure_outlet, wave_transmissive, free_stream, wall, moving_wall, slip,
+  symmetry, periodic, jet
+};
+enum class JetKind { self_similar, velocity_inlet, computed };
+enum class ValveShape { linear, smooth, exponential, trace };
+enum class ShapeKind { sphere, box, multisphere, cluster, polyhedron, mesh, superquadric };
+enum class Motion { free, fixed, prescribed };
+enum class ContactLaw { hertz_mindlin, linear };
+enum class WallKind { plane, plate, box, belt, mesh };
+enum class RunUntil { time, verdict, rest };
+
+/// [run]
+struct RunSpec {
+  std::string title;
+  RunUntil until = RunUntil::time;  ///< "verdict": end_time is only the limit
+  double end_time = 0.0;            ///< s
+  double courant = 1.0;             ///< sum over directions of |u| dt / h (paper, Eq. 6)
+  std::optional<double> time_step;  ///< s, fixed flow step; otherwise adaptive
+  double time_step_max = 1e30;      ///< s
+};
+
+/// [environment]
+struct EnvironmentSpec {
+  Vec3 gravity{0, 0, -9.81};     ///< m/s2
+  double pressure = 101325.0;    ///< Pa, absolute
+  double temperature = 298.15;   ///< K
+};
+
+/// [fluid]: "air" takes density from the environment by the ideal gas law; otherwise a Newtonian liquid or gas
+struct FluidSpec {
+  bool ideal_gas = true;
+  double density = 0.0;           ///< kg/m3; for a gas filled in from the environment
+  double viscosity = 1.85e-5;     ///< Pa s, dynamic
+  double gamma = 1.4;
+  double gas_constant = 287.05;   ///< J/kg/K
+  double prandtl = 0.71;
+  double prandtl_turbulent = 0.9;
+};
+
+/// [flow]
+struct FlowSpec {
+  FlowSolver solver = FlowSolver::incompressible;
+  TurbulenceModel turbulence = TurbulenceModel::laminar;
+  bool round_jet_correction = true;        ///< Pope 1978, k-epsilon only
+  bool compressibility_correction = true;  ///< Sarkar 1991; compressible solvers only
+  int corrections = 2;                     ///< pressure corrections a step, >= 2
+  double forcing_tolerance = 0.0;          ///< leak through bodies at which corrections stop early (0: never)
+  /// Uniform acceleration of the fluid besides gravity (drives a channel), m/s2
+  Vec3 body_force{0, 0, 0};
+};
+
+/// [grid.x], [grid.y], [grid.z]: blocks between `points`, each with `cells` and `grading` (last/first cell)
+struct AxisSpec {
+  std::vector<double> points;   ///< m
+  std::vector<int> cells;
+  std::vector<double> grading;  ///< empty: 1 everywhere
+};
+
+/// [grid]; in axisymmetric geometry x is the radius, z the axis, y has one cell
+struct GridSpec {
+  Geometry geometry = Geometry::cartesian;
+  std::array<AxisSpec, 3> axis;
+};
+
+/// State on a boundary or in a region. Strings are expressions in x, y, z, t (metres, seconds -> SI).
+struct StateSpec {
+  std::optional<std::array<std::string, 3>> velocity;  ///< m/s
+  std::optional<std::string> pressure;                 ///< Pa: gauge for incompressible, absolute otherwise
+  std::optional<std::string> density;                  ///< kg/m3, compressible
+  std::optional<std::string> temperature;              ///< K, compressible
+  std::optional<double> k;                             ///< m2/s2
+  std::optional<double> epsilon;                       ///< m2/s3
+};
+
+/// [[boundary.z_min.patch]]: a disc on that face with a type of its own
+struct PatchSpec {
+  BoundaryType type = BoundaryType::velocity;
+  Vec3 centre{0, 0, 0};
+  double radius = 0.0;
+  StateSpec state;
+  double total_pressure = 0.0;  ///< Pa absolute
+  double total_temperature = 0.0;
+};
+
+/// [boundary.x_min] ... [boundary.z_max], in the order x_min, x_max, y_min, y_max, z_min, z_max
+struct BoundarySpec {
+  BoundaryType type = BoundaryType::wall;
+  StateSpec state;
+  double total_pressure = 0.0;     ///< Pa absolute, 0: ambient
+  double total_temperature = 0.0;  ///< K, 0: ambient
+  std::vector<PatchSpec> patches;
+};
+
+/// [[initial]]: applied in order; a box, a disc/sphere or everywhere
+struct InitialSpec {
+  std::optional<std::array<Vec3, 2>> box;
+  StateSpec state;
+};
+
+/// [valve]
+struct ValveSpec {
+  double supply_pressure = 801325.0;    ///< Pa absolute (the file says gauge or absolute)
+  double supply_temperature = 0.0;      ///< K, 0: ambient
+  double orifice_diameter = 1.8e-3;     ///< m (assumption: design.md section 6)
+  double nozzle_length = 0.0;           ///< m, straight
+  double nozzle_inlet_diameter = 0.0;   ///< m, 0: straight
+  double discharge_coefficient = 1.0;
+  double opens_at = 0.0;                ///< s, the command
+  double duration = 8e-3;               ///< s, length of the command
+  double delay = 0.0;                   ///< s, command to first movement
+  double rise_time = 6e-3;              ///< s, 0 -> fully open
+  double fall_time = 1e-3;              ///< s
+  ValveShape shape = ValveShape::smooth;
+  std::string trace;                    ///< CSV file: time, opening 0..1
+  std::vector<double> more_pulses;      ///< further opening times, s
+};
+
+/// [jet]: what enters the box through a boundary of type "jet"
+struct JetSpec {
+  JetKind kind = JetKind::self_similar;
+  Vec3 nozzle{0, 0, 0};          ///< m, centre of the orifice; the jet blows along +z
+  double velocity_decay = 5.9;   ///< B in U_c/U_0 = B d/(z - z0)
+  double spreading = 0.094;      ///< S = r_half/(z - z0)
+  double virtual_origin = 0.0;   ///< z0/d
+  double inlet_velocity = 0.0;   ///< m/s for "velocity-inlet"; 0: the momentum-equivalent velocity
+  double turbulence_intensity = 0.05;
+  std::string source_case;       ///< for "computed": the jet case
+};
+
+/// [[material]]
+struct MaterialSpec {
+  std::string name;
+  double youngs_modulus = 5e6;  ///< Pa (paper, Table 2)
+  double poisson_ratio = 0.45;
+  double density = 2700.0;      ///< kg/m3
+  double restitution = 0.3;
+  double friction = 0.5;
+  double rolling_friction = 0.0;
+};
+
+/// [[material_pair]]: overrides the combination of two materials
+struct MaterialPairSpec {
+  std::string a, b;
+  std::optional<double> restitution, friction, rolling_friction;
+};
+
+/// [contact]
+struct ContactSpec {
+  ContactLaw law = ContactLaw::hertz_mindlin;
+  double time_step_fraction = 0.1;  ///< of the smaller of Rayleigh and Hertz time
+  std::optional<double> time_step;  ///< s
+  bool allow_tension = false;       ///< at the end of contact; false: clamped, damping adjusted (F2)
+  double linear_stiffness = 0.0;    ///< N/m, linear law
+};
+
+/// [[body]]
+struct BodySpec {
+  std::string name;
+  ShapeKind shape = ShapeKind::sphere;
+  double diameter = 0.0;                  ///< sphere
+  Vec3 size{0, 0, 0};                     ///< box, superquadric, cluster: full edge lengths, m
+  std::vector<std::array<double, 4>> spheres;  ///< multisphere: x, y, z, radius in body axes
+  std::array<int, 3> cluster{3, 3, 3};    ///< spheres along each edge of the paper's cluster, inside `size`
+  double sphere_diameter = 0.0;           ///< cluster
+  std::vector<Vec3> vertices;             ///< polyhedron: convex hull of these
+  std::string file;                       ///< mesh: STL
+  double scale = 1.0;                     ///< of the mesh
+  std::array<double, 2> exponents{2, 2};  ///< superquadric
+  std::string material;
+  std::optional<double> density;          ///< kg/m3, else the material's
+  bool true_box_mass = false;             ///< cluster: mass and inertia of the box it stands for
+  std::optional<double> mass;             ///< kg, overrides
+  Motion motion = Motion::free;
+  Vec3 position{0, 0, 0};                 ///< m, of the centre of mass at release
+  Vec3 velocity{0, 0, 0};                 ///< m/s
+  Vec3 spin{0, 0, 0};                     ///< rad/s, world axes
+  Vec3 rotation_axis{0, 0, 1};
+  double rotation_angle = 0.0;            ///< rad
+  double release_at = 0.0;                ///< s, body rests as placed until then
+  bool on_belt = false;                   ///< placed by [launch] instead of position/velocity
+};
+
+/// [launch]: the free flight from the belt to the jet (paper 2.2.5). The body crosses the jet's axis
+/// (x = offset) at `arrives_at` if no air acts.
+struct LaunchSpec {
+  bool enabled = false;
+  double belt_speed = 3.0;       ///< m/s, +x
+  double drop_distance = 0.1;    ///< m, horizontal distance flown from the end of the belt to the jet
+  double stand_off = 75e-3;      ///< m, height of the body's centre above the nozzle as it crosses the axis
+  double arrives_at = 4e-3;      ///< s
+  double offset_along = 0.0;     ///< m, added to x (paper's primary axis)
+  double offset_across = 0.0;    ///< m, added to y
+};
+
+/// [[wall]]
+struct WallSpec {
+  std::string name;
+  WallKind kind = WallKind::plane;
+  Vec3 point{0, 0, 0};
+  Vec3 normal{0, 0, 1};          ///< towards the bodies
+  Vec3 size{0, 0, 0};            ///< plate: extents along its two tangents and thickness; box: edges
+  Vec3 velocity{0, 0, 0};        ///< surface velocity (belt)
+  std::string material;
+  std::string file;              ///< mesh
+};
+
+/// [splitter]: the dividing plate. A body is ejected when its centre passes above the edge.
+struct SplitterSpec {
+  bool enabled = false;
+  double distance = 0.25;      ///< m, +x from the jet's axis to the edge
+  double height = 0.045;       ///< m, edge above the path of the undisturbed body there
+  double thickness = 2e-3;     ///< m
+  double length = 0.1;         ///< m, downstream extent
+};
+
+/// [[probe]], [[line]], [[slice]]
+struct ProbeSpec {
+  std::string name;
+  Vec3 position{0, 0, 0};
+  double diameter = 0.0;       ///< m, averaged over (transducer 2 mm)
+  double response_time = 0.0;  ///< s, first-order lag (transducer 1 ms)
+};
+struct LineSpec {
+  std::string name;
+  Vec3 from{0, 0, 0}, to{0, 0, 0};
+  int points = 100;
+};
+struct SliceSpec {
+  std::string name;
+  int axis = 1;  ///< normal
+  double position = 0.0;
+};
+
+/// [output]
+struct OutputSpec {
+  double fields_interval = 0.0;   ///< s, 0: none
+  double history_interval = 0.0;  ///< s, 0: every step
+  double slices_interval = 0.0;   ///< s
+  bool report = true;
+  std::vector<std::string> fields;  ///< empty: all
+};
+
+/// [checkpoint]
+struct CheckpointSpec {
+  std::int64_t every_steps = 0;
+  double every_time = 0.0;       ///< s, simulated
+  double every_wall_time = 0.0;  ///< s
+};
+
+/// [exact]: expressions in x, y, z, t; result.json then holds error norms
+struct ExactSpec {
+  std::optional<std::array<std::string, 3>> velocity;
+  std::optional<std::string> pressure, density;
+  std::array<std::string, 3> source{"0", "0", "0"};  ///< manufactured momentum source, m/s2
+};
+
+/// [[expect]]: what `ejecta validate` compares with result.json
+struct ExpectSpec {
+  std::string quantity;  ///< JSON pointer into result.json, e.g. "/bodies/0/drag_coefficient"
+  double reference = 0.0;
+  std::optional<double> tolerance;            ///< absolute
+  std::optional<double> relative_tolerance;
+  std::optional<double> at_least, at_most;
+  std::string text;                           ///< expected string instead of a number
+  std::string source;
+};
+
+/// [convergence]: `ejecta validate` repeats the case with cells times each factor; result gets observed orders
+struct ConvergenceSpec {
+  std::vector<double> factors;
+  bool scale_time_step = true;
+};
+
+/// [stream]: free stream for drag coefficients
+struct StreamSpec {
+  bool enabled = false;
+  Vec3 velocity{0, 0, 0};       ///< m/s
+  double reference_area = 0.0;  ///< m2, 0: projected area of the body
+  double average_from = 0.0;    ///< s, means are taken from here on
+};
+
+struct Case {
+  std::string path;  ///< of the file it came from; relative names inside are relative to it
+  RunSpec run;
+  EnvironmentSpec environment;
+  FluidSpec fluid;
+  FlowSpec flow;
+  GridSpec grid;
+  std::array<BoundarySpec, 6> boundary;
+  std::vector<InitialSpec> initial;
+  ValveSpec valve;
+  JetSpec jet;
+  std::vector<MaterialSpec> materials;
+  std::vector<MaterialPairSpec> material_pairs;
+  ContactSpec contact;
+  std::vector<BodySpec> bodies;
+  LaunchSpec launch;
+  std::vector<WallSpec> walls;
+  SplitterSpec splitter;
+  StreamSpec stream;
+  std::vector<ProbeSpec> probes;
+  std::vector<LineSpec> lines;
+  std::vector<SliceSpec> slices;
+  OutputSpec output;
+  CheckpointSpec checkpoint;
+  ExactSpec exact;
+  std::vector<ExpectSpec> expects;
+  ConvergenceSpec convergence;
+};
+
+}  // namespace ejecta
