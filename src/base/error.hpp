@@ -4,7 +4,8 @@
 
 namespace ejecta {
 
-/// Library code throws these with context (key, file:line, value, unit); only app/ turns them into exit codes.
+/// Library code throws these with context (key, file:line, value, unit); only app/ turns them into exit
+/// codes.
 struct Error : std::runtime_error {
   using std::runtime_error::runtime_error;
 };

@@ -8,8 +8,26 @@ namespace ejecta {
 
 /// What a quantity measures. Each has one SI unit, in which the program holds it.
 enum class Dimension {
-  none, length, area, volume, time, velocity, acceleration, angle, angular_velocity, mass, density, force,
-  pressure_gauge, pressure_absolute, pressure, temperature, viscosity, frequency, stiffness, specific_energy,
+  none,
+  length,
+  area,
+  volume,
+  time,
+  velocity,
+  acceleration,
+  angle,
+  angular_velocity,
+  mass,
+  density,
+  force,
+  pressure_gauge,
+  pressure_absolute,
+  pressure,
+  temperature,
+  viscosity,
+  frequency,
+  stiffness,
+  specific_energy,
   dissipation_rate
 };
 
