@@ -4,7 +4,9 @@
 add_library(ejecta_options INTERFACE)
 target_include_directories(ejecta_options INTERFACE ${PROJECT_SOURCE_DIR}/src)
 # No -ffast-math: NaN must stay detectable and sums must keep their order.
-target_compile_options(ejecta_options INTERFACE -Wall -Wextra -Wpedantic -march=native -fno-math-errno
+# GCC 12 warns of uninitialised __Y inside its own AVX-512 header.
+target_compile_options(ejecta_options INTERFACE -Wall -Wextra -Wpedantic -Wno-maybe-uninitialized
+                       -march=native -fno-math-errno
                        -fno-trapping-math)
 target_link_libraries(ejecta_options INTERFACE fmt::fmt Eigen3::Eigen OpenMP::OpenMP_CXX)
 target_compile_definitions(ejecta_options INTERFACE EIGEN_DONT_PARALLELIZE)

@@ -1,5 +1,6 @@
 #pragma once
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <vector>
 
@@ -34,6 +35,27 @@ void for_each_index(int count, const Kernel& kernel) {
 #pragma omp parallel for schedule(static)
   for (int n = 0; n < count; ++n) kernel(n);
 }
+
+/// kernel(i) for i in [i0, i1) in SIMD on this thread.
+template <class Kernel>
+inline void for_each_lane(int i0, int i1, const Kernel& kernel) {
+#pragma omp simd
+  for (int i = i0; i < i1; ++i) kernel(i);
+}
+
+/// kernel(begin, end) for one contiguous chunk of [0, count) a thread: for sweeps that reuse what the
+/// previous plane computed. The kernel's result must not depend on where chunks begin.
+template <class Kernel>
+void for_each_chunk(int count, const Kernel& kernel) {
+  const int chunks = thread_count() < count ? thread_count() : count;
+#pragma omp parallel for schedule(static)
+  for (int c = 0; c < chunks; ++c)
+    kernel(static_cast<int>(std::int64_t(count) * c / chunks),
+           static_cast<int>(std::int64_t(count) * (c + 1) / chunks));
+}
+
+/// 64-byte aligned scratch of this thread, kept between calls; slot tells several buffers apart.
+Real* thread_scratch(std::size_t count, int slot = 0);
 
 /// As for_each_index, for iterations of very different cost.
 template <class Kernel>

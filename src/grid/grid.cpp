@@ -53,15 +53,21 @@ Grid::Lines Grid::make_lines(const Axis& a, bool radial, bool collapsed) {
     previous_centre = centre;
     previous_width = width;
   }
+  for (int m = 0; m < total; ++m) {
+    const std::size_t lo = static_cast<std::size_t>(std::max(m - 1, 0));
+    const std::size_t hi = static_cast<std::size_t>(std::min(m + 1, total - 1));
+    const double span = 0.5 * (face[hi] + face[hi + 1] - face[lo] - face[lo + 1]);
+    l.inv_span.push_back(static_cast<Real>(1.0 / span));
+  }
   if (radial && a.face.front() < 1e-12 * a.length()) l.area[static_cast<std::size_t>(g)] = 0;
   return l;
 }
 
 Metrics Grid::metrics(int d) const {
   const Lines& l = lines_[static_cast<std::size_t>(d)];
-  return {l.width.data() + kGhosts,        l.centre.data() + kGhosts, l.face.data() + kGhosts,
-          l.volume.data() + kGhosts,       l.area.data() + kGhosts,   l.inv_volume.data() + kGhosts,
-          l.inv_distance.data() + kGhosts, l.weight.data() + kGhosts};
+  return {l.width.data() + kGhosts,        l.centre.data() + kGhosts,   l.face.data() + kGhosts,
+          l.volume.data() + kGhosts,       l.area.data() + kGhosts,     l.inv_volume.data() + kGhosts,
+          l.inv_distance.data() + kGhosts, l.inv_span.data() + kGhosts, l.weight.data() + kGhosts};
 }
 
 double Grid::volume(int i, int j, int k) const {

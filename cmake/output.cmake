@@ -1,0 +1,36 @@
+# What the output room needs besides its sources: facts about the build, and the report page.
+
+find_package(ZLIB REQUIRED)
+target_link_libraries(ejecta_output PUBLIC ZLIB::ZLIB)
+
+execute_process(COMMAND git describe --always --dirty --tags WORKING_DIRECTORY ${PROJECT_SOURCE_DIR}
+                OUTPUT_VARIABLE revision OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
+if(NOT revision)
+  set(revision unknown)
+endif()
+string(TOUPPER "${CMAKE_BUILD_TYPE}" build_type)
+get_target_property(options ejecta_options INTERFACE_COMPILE_OPTIONS)
+string(JOIN " " flags ${CMAKE_CXX_FLAGS} ${CMAKE_CXX_FLAGS_${build_type}} ${options})
+set_source_files_properties(${PROJECT_SOURCE_DIR}/src/output/build_info.cpp PROPERTIES COMPILE_DEFINITIONS
+  "EJECTA_VERSION=\"${PROJECT_VERSION}\";EJECTA_GIT_REVISION=\"${revision}\";EJECTA_COMPILER=\"${CMAKE_CXX_COMPILER_ID} ${CMAKE_CXX_COMPILER_VERSION}\";EJECTA_COMPILE_FLAGS=\"${flags}\"")
+
+# The report page (report/, TypeScript) is built where npm is found and becomes part of the program. Elsewhere,
+# or when npm cannot fetch its packages, the page is empty and `ejecta` writes a plain report that says so.
+find_program(NPM npm)
+option(EJECTA_REPORT "Build the report page with npm" ON)
+file(GLOB_RECURSE report_sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/report/src/*)
+set(report_page ${CMAKE_BINARY_DIR}/report/page.html)
+if(NPM AND EJECTA_REPORT)
+  add_custom_command(OUTPUT ${report_page}
+    COMMAND ${CMAKE_COMMAND} -DNPM=${NPM} -DSOURCE=${PROJECT_SOURCE_DIR}/report -DBUILD=${CMAKE_BINARY_DIR}/report
+            -DPAGE=${report_page} -P ${PROJECT_SOURCE_DIR}/cmake/build_report.cmake
+    DEPENDS ${report_sources} ${PROJECT_SOURCE_DIR}/report/index.html ${PROJECT_SOURCE_DIR}/report/package-lock.json
+            ${PROJECT_SOURCE_DIR}/report/vite.config.ts ${PROJECT_SOURCE_DIR}/report/tsconfig.json
+            ${PROJECT_SOURCE_DIR}/cmake/build_report.cmake
+    COMMENT "Building the report page")
+else()
+  message(STATUS "npm not found: reports will be plain tables")
+  file(WRITE ${report_page} "")
+endif()
+set_source_files_properties(${PROJECT_SOURCE_DIR}/src/output/report_page.cpp PROPERTIES
+  COMPILE_DEFINITIONS "EJECTA_REPORT_PAGE=\"${report_page}\"" OBJECT_DEPENDS ${report_page})
