@@ -1,0 +1,15 @@
+#pragma once
+#include "base/vec.hpp"
+
+namespace ejecta {
+
+/// Turns `orientation` over dt under no torque, with the angular momentum `momentum` (world axes, kg m2/s)
+/// held exactly. Splits the kinetic energy L1^2/2I1 + L2^2/2I2 + L3^2/2I3 into exact turns about single axes
+/// (Dullweber, Leimkuhler & McLachlan 1997, J. Chem. Phys. 107:5840), composed to fourth order (Yoshida
+/// 1990), in as many pieces as keep each turn below 0.05 rad: the energy error stays bounded.
+void rotate_free(Quat& orientation, const Vec3& momentum, const Vec3& inertia, double dt);
+
+/// Angular velocity (world, rad/s) of a body with this angular momentum.
+Vec3 angular_velocity(const Quat& orientation, const Vec3& momentum, const Vec3& inertia);
+
+}  // namespace ejecta

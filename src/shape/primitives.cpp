@@ -1,0 +1,53 @@
+#include "shape/primitives.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace ejecta {
+namespace {
+
+const Ball& nearest_ball(const std::vector<Ball>& balls, const Vec3& p) {
+  return *std::min_element(balls.begin(), balls.end(), [&](const Ball& a, const Ball& b) {
+    return (p - a.centre).norm() - a.radius < (p - b.centre).norm() - b.radius;
+  });
+}
+
+}  // namespace
+
+double distance_balls(const std::vector<Ball>& balls, const Vec3& p) {
+  const Ball& ball = nearest_ball(balls, p);
+  return (p - ball.centre).norm() - ball.radius;
+}
+
+Vec3 gradient_balls(const std::vector<Ball>& balls, const Vec3& p) {
+  const Vec3 out = p - nearest_ball(balls, p).centre;
+  const double length = out.norm();
+  return length > 0 ? Vec3(out / length) : Vec3::UnitZ();
+}
+
+Vec3 support_balls(const std::vector<Ball>& balls, const Vec3& direction) {
+  const Vec3 d = direction.normalized();
+  const Ball& ball = *std::max_element(balls.begin(), balls.end(), [&](const Ball& a, const Ball& b) {
+    return d.dot(a.centre) + a.radius < d.dot(b.centre) + b.radius;
+  });
+  return ball.centre + ball.radius * d;
+}
+
+double distance_box(const Vec3& half, const Vec3& p) {
+  const Vec3 q = p.cwiseAbs() - half;
+  return q.cwiseMax(0.0).norm() + std::min(q.maxCoeff(), 0.0);
+}
+
+Vec3 gradient_box(const Vec3& half, const Vec3& p) {
+  const Vec3 q = p.cwiseAbs() - half;
+  const Vec3 sign = p.unaryExpr([](double v) { return v < 0 ? -1.0 : 1.0; });
+  int axis = 0;
+  if (q.maxCoeff(&axis) <= 0) return sign[axis] * Vec3::Unit(axis);
+  return sign.cwiseProduct(q.cwiseMax(0.0)).normalized();
+}
+
+Vec3 support_box(const Vec3& half, const Vec3& direction) {
+  return direction.unaryExpr([](double v) { return v < 0 ? -1.0 : 1.0; }).cwiseProduct(half);
+}
+
+}  // namespace ejecta

@@ -1,0 +1,77 @@
+#include "shape/shape.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "base/error.hpp"
+
+namespace ejecta {
+namespace {
+
+std::vector<std::pair<const char*, Shape>> all_shapes() {
+  return {{"sphere", make_sphere(2.0)},
+          {"box", make_box(Vec3(1, 2, 3))},
+          {"two balls", make_multisphere({{Vec3(0, 0, 0), 1.0}, {Vec3(1, 0.5, 0), 0.7}})},
+          {"cluster", make_cluster(Vec3(1, 1, 0.5), {3, 3, 1}, 0.5)}};
+}
+
+TEST(Shape, SurfaceIsClosedAndLiesOnTheZeroDistance) {
+  for (const auto& [name, shape] : all_shapes()) {
+    const TriangleMesh mesh = shape.surface(0.01);
+    EXPECT_NO_THROW(require_closed(mesh, name));
+    for (const Vec3& v : mesh.vertices) EXPECT_NEAR(shape.signed_distance(v), 0.0, 0.02) << name;
+    EXPECT_NEAR(mass_mesh(mesh).volume / shape.mass_properties().volume, 1.0, 0.03) << name;
+  }
+}
+
+TEST(Shape, SupportIsFarthestOfTheSurface) {
+  for (const auto& [name, shape] : all_shapes())
+    for (const Vec3& d : {Vec3(1, 0, 0), Vec3(-0.3, 0.4, 1), Vec3(0.2, -1, -0.7)}) {
+      const double reach = shape.support(d).dot(d);
+      for (const Vec3& v : shape.surface().vertices) EXPECT_LE(v.dot(d), reach + 0.01) << name;
+      EXPECT_NEAR(shape.signed_distance(shape.support(d)), 0.0, 1e-9) << name;
+      EXPECT_LE(shape.support(d).norm(), shape.bounding_radius() * (1 + 1e-12)) << name;
+    }
+}
+
+TEST(Shape, GradientIsTheSlopeOfTheDistance) {
+  const double h = 1e-6;
+  for (const auto& [name, shape] : all_shapes())
+    for (const Vec3& p : {Vec3(1.3, 0.9, 1.8), Vec3(-1.1, 0.4, -0.2), Vec3(0.31, -0.52, 0.11)}) {
+      Vec3 slope;
+      for (int c = 0; c < 3; ++c)
+        slope[c] =
+            (shape.signed_distance(p + h * Vec3::Unit(c)) - shape.signed_distance(p - h * Vec3::Unit(c))) /
+            (2 * h);
+      EXPECT_NEAR((slope - shape.gradient(p)).norm(), 0.0, 1e-6) << name;
+    }
+}
+
+TEST(Shape, ProjectedAreas) {
+  EXPECT_NEAR(make_sphere(2.0).projected_area(Vec3(1, 2, 3)), std::numbers::pi, 1e-12);
+  EXPECT_NEAR(make_box(Vec3(1, 2, 3)).projected_area(Vec3(0, 0, 5)), 2.0, 1e-12);
+  EXPECT_NEAR(make_box(Vec3(1, 1, 1)).projected_area(Vec3(1, 1, 1)), std::sqrt(3.0), 1e-12);
+  EXPECT_NEAR(make_cluster(Vec3(10, 10, 10), {3, 3, 3}, 5.0).projected_area(Vec3(0, 0, 1)), 92.468, 0.01);
+}
+
+TEST(Shape, BodyAxesArePrincipalAndCentred) {
+  const Shape s = make_multisphere({{Vec3(5, 5, 5), 1.0}, {Vec3(6.0, 5.5, 5), 0.7}});
+  const BodyFrame& f = s.frame();
+  // The long axis joins the centres; a point of the user's maps onto the surface.
+  const Vec3 along = f.rotation * Vec3::UnitX();
+  EXPECT_NEAR(along.cross(Vec3(1, 0.5, 0).normalized()).norm(), 0.0, 1e-6);
+  EXPECT_NEAR(s.signed_distance(f.rotation.conjugate() * (Vec3(4, 5, 5) - f.centre)), 0.0, 1e-9);
+}
+
+TEST(Shape, RefusesLengthsThatAreNot) {
+  EXPECT_THROW(make_sphere(0.0), InputError);
+  EXPECT_THROW(make_sphere(std::nan("")), InputError);
+  EXPECT_THROW(make_box(Vec3(1, -1, 1)), InputError);
+  EXPECT_THROW(make_multisphere({}), InputError);
+  EXPECT_THROW(make_cluster(Vec3(1, 1, 1), {3, 3, 3}, 2.0), InputError);
+}
+
+}  // namespace
+}  // namespace ejecta
