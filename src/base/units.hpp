@@ -28,7 +28,8 @@ enum class Dimension {
   frequency,
   stiffness,
   specific_energy,
-  dissipation_rate
+  dissipation_rate,
+  specific_heat
 };
 
 /// Name of the SI unit, e.g. "m/s".
@@ -37,5 +38,20 @@ std::string_view si_unit(Dimension d);
 std::vector<std::string> known_units(Dimension d);
 /// Factor to SI, or nothing for a unit that does not fit. Temperatures in C need the offset of to_si.
 std::optional<double> to_si(double value, std::string_view unit, Dimension d);
+
+/// In words, e.g. "a time", "a pressure (gauge or absolute)".
+std::string_view describe(Dimension d);
+/// A quantity as one writes it, e.g. "8 ms"; used in error messages.
+std::string_view example(Dimension d);
+/// Reads "700 kPa gauge" into SI. `ambient` (Pa, absolute) turns gauge into absolute and back. Throws
+/// InputError that says what is wrong with `text`, without saying where it stands.
+double parse_quantity(std::string_view text, Dimension d, double ambient = 101325.0);
+/// The shortest text that parse_quantity reads back to the same bits, e.g. 0.008 s -> "8 ms".
+std::string format_quantity(double si, Dimension d);
+/// A finite number that fills the whole text, e.g. "1.5e-3"; nothing for anything else (also NaN and
+/// infinity).
+std::optional<double> parse_number(std::string_view text);
+/// The candidate that differs from `word` in the fewest letters, if it is a likely typing error; else "".
+std::string nearest(std::string_view word, const std::vector<std::string>& candidates);
 
 }  // namespace ejecta

@@ -16,8 +16,17 @@ enum class FlowSolver { none, incompressible, compressible, compressible_piso };
 enum class TurbulenceModel { laminar, k_epsilon, k_omega_sst };
 enum class Geometry { cartesian, axisymmetric };
 enum class BoundaryType {
-  velocity, total_pressure, pressure_outlet, wave_transmissive, free_stream, wall, moving_wall, slip,
-  symmetry, periodic, jet
+  velocity,
+  total_pressure,
+  pressure_outlet,
+  wave_transmissive,
+  free_stream,
+  wall,
+  moving_wall,
+  slip,
+  symmetry,
+  periodic,
+  jet
 };
 enum class JetKind { self_similar, velocity_inlet, computed };
 enum class ValveShape { linear, smooth, exponential, trace };
@@ -39,18 +48,19 @@ struct RunSpec {
 
 /// [environment]
 struct EnvironmentSpec {
-  Vec3 gravity{0, 0, -9.81};     ///< m/s2
-  double pressure = 101325.0;    ///< Pa, absolute
-  double temperature = 298.15;   ///< K
+  Vec3 gravity{0, 0, -9.81};    ///< m/s2
+  double pressure = 101325.0;   ///< Pa, absolute
+  double temperature = 298.15;  ///< K
 };
 
-/// [fluid]: "air" takes density from the environment by the ideal gas law; otherwise a Newtonian liquid or gas
+/// [fluid]: "air" takes density from the environment by the ideal gas law; otherwise a Newtonian liquid or
+/// gas
 struct FluidSpec {
   bool ideal_gas = true;
-  double density = 0.0;           ///< kg/m3; for a gas filled in from the environment
-  double viscosity = 1.85e-5;     ///< Pa s, dynamic
+  double density = 0.0;        ///< kg/m3; for a gas filled in from the environment
+  double viscosity = 1.85e-5;  ///< Pa s, dynamic
   double gamma = 1.4;
-  double gas_constant = 287.05;   ///< J/kg/K
+  double gas_constant = 287.05;  ///< J/kg/K
   double prandtl = 0.71;
   double prandtl_turbulent = 0.9;
 };
@@ -69,7 +79,7 @@ struct FlowSpec {
 
 /// [grid.x], [grid.y], [grid.z]: blocks between `points`, each with `cells` and `grading` (last/first cell)
 struct AxisSpec {
-  std::vector<double> points;   ///< m
+  std::vector<double> points;  ///< m
   std::vector<int> cells;
   std::vector<double> grading;  ///< empty: 1 everywhere
 };
@@ -117,32 +127,32 @@ struct InitialSpec {
 
 /// [valve]
 struct ValveSpec {
-  double supply_pressure = 801325.0;    ///< Pa absolute (the file says gauge or absolute)
-  double supply_temperature = 0.0;      ///< K, 0: ambient
-  double orifice_diameter = 1.8e-3;     ///< m (assumption: design.md section 6)
-  double nozzle_length = 0.0;           ///< m, straight
-  double nozzle_inlet_diameter = 0.0;   ///< m, 0: straight
+  double supply_pressure = 801325.0;   ///< Pa absolute (the file says gauge or absolute)
+  double supply_temperature = 0.0;     ///< K, 0: ambient
+  double orifice_diameter = 1.8e-3;    ///< m (assumption: design.md section 6)
+  double nozzle_length = 0.0;          ///< m, straight
+  double nozzle_inlet_diameter = 0.0;  ///< m, 0: straight
   double discharge_coefficient = 1.0;
-  double opens_at = 0.0;                ///< s, the command
-  double duration = 8e-3;               ///< s, length of the command
-  double delay = 0.0;                   ///< s, command to first movement
-  double rise_time = 6e-3;              ///< s, 0 -> fully open
-  double fall_time = 1e-3;              ///< s
+  double opens_at = 0.0;    ///< s, the command
+  double duration = 8e-3;   ///< s, length of the command
+  double delay = 0.0;       ///< s, command to first movement
+  double rise_time = 6e-3;  ///< s, 0 -> fully open
+  double fall_time = 1e-3;  ///< s
   ValveShape shape = ValveShape::smooth;
-  std::string trace;                    ///< CSV file: time, opening 0..1
-  std::vector<double> more_pulses;      ///< further opening times, s
+  std::string trace;                ///< CSV file: time, opening 0..1
+  std::vector<double> more_pulses;  ///< further opening times, s
 };
 
 /// [jet]: what enters the box through a boundary of type "jet"
 struct JetSpec {
   JetKind kind = JetKind::self_similar;
-  Vec3 nozzle{0, 0, 0};          ///< m, centre of the orifice; the jet blows along +z
-  double velocity_decay = 5.9;   ///< B in U_c/U_0 = B d/(z - z0)
-  double spreading = 0.094;      ///< S = r_half/(z - z0)
-  double virtual_origin = 0.0;   ///< z0/d
-  double inlet_velocity = 0.0;   ///< m/s for "velocity-inlet"; 0: the momentum-equivalent velocity
+  Vec3 nozzle{0, 0, 0};         ///< m, centre of the orifice; the jet blows along +z
+  double velocity_decay = 5.9;  ///< B in U_c/U_0 = B d/(z - z0)
+  double spreading = 0.094;     ///< S = r_half/(z - z0)
+  double virtual_origin = 0.0;  ///< z0/d
+  double inlet_velocity = 0.0;  ///< m/s for "velocity-inlet"; 0: the momentum-equivalent velocity
   double turbulence_intensity = 0.05;
-  std::string source_case;       ///< for "computed": the jet case
+  std::string source_case;  ///< for "computed": the jet case
 };
 
 /// [[material]]
@@ -150,7 +160,7 @@ struct MaterialSpec {
   std::string name;
   double youngs_modulus = 5e6;  ///< Pa (paper, Table 2)
   double poisson_ratio = 0.45;
-  double density = 2700.0;      ///< kg/m3
+  double density = 2700.0;  ///< kg/m3
   double restitution = 0.3;
   double friction = 0.5;
   double rolling_friction = 0.0;
@@ -175,8 +185,8 @@ struct ContactSpec {
 struct BodySpec {
   std::string name;
   ShapeKind shape = ShapeKind::sphere;
-  double diameter = 0.0;                  ///< sphere
-  Vec3 size{0, 0, 0};                     ///< box, superquadric, cluster: full edge lengths, m
+  double diameter = 0.0;                       ///< sphere
+  Vec3 size{0, 0, 0};                          ///< box, superquadric, cluster: full edge lengths, m
   std::vector<std::array<double, 4>> spheres;  ///< multisphere: x, y, z, radius in body axes
   std::array<int, 3> cluster{3, 3, 3};    ///< spheres along each edge of the paper's cluster, inside `size`
   double sphere_diameter = 0.0;           ///< cluster
@@ -185,29 +195,29 @@ struct BodySpec {
   double scale = 1.0;                     ///< of the mesh
   std::array<double, 2> exponents{2, 2};  ///< superquadric
   std::string material;
-  std::optional<double> density;          ///< kg/m3, else the material's
-  bool true_box_mass = false;             ///< cluster: mass and inertia of the box it stands for
-  std::optional<double> mass;             ///< kg, overrides
+  std::optional<double> density;  ///< kg/m3, else the material's
+  bool true_box_mass = false;     ///< cluster: mass and inertia of the box it stands for
+  std::optional<double> mass;     ///< kg, overrides
   Motion motion = Motion::free;
-  Vec3 position{0, 0, 0};                 ///< m, of the centre of mass at release
-  Vec3 velocity{0, 0, 0};                 ///< m/s
-  Vec3 spin{0, 0, 0};                     ///< rad/s, world axes
+  Vec3 position{0, 0, 0};  ///< m, of the centre of mass at release
+  Vec3 velocity{0, 0, 0};  ///< m/s
+  Vec3 spin{0, 0, 0};      ///< rad/s, world axes
   Vec3 rotation_axis{0, 0, 1};
-  double rotation_angle = 0.0;            ///< rad
-  double release_at = 0.0;                ///< s, body rests as placed until then
-  bool on_belt = false;                   ///< placed by [launch] instead of position/velocity
+  double rotation_angle = 0.0;  ///< rad
+  double release_at = 0.0;      ///< s, body rests as placed until then
+  bool on_belt = false;         ///< placed by [launch] instead of position/velocity
 };
 
 /// [launch]: the free flight from the belt to the jet (paper 2.2.5). The body crosses the jet's axis
 /// (x = offset) at `arrives_at` if no air acts.
 struct LaunchSpec {
   bool enabled = false;
-  double belt_speed = 3.0;       ///< m/s, +x
-  double drop_distance = 0.1;    ///< m, horizontal distance flown from the end of the belt to the jet
-  double stand_off = 75e-3;      ///< m, height of the body's centre above the nozzle as it crosses the axis
-  double arrives_at = 4e-3;      ///< s
-  double offset_along = 0.0;     ///< m, added to x (paper's primary axis)
-  double offset_across = 0.0;    ///< m, added to y
+  double belt_speed = 3.0;     ///< m/s, +x
+  double drop_distance = 0.1;  ///< m, horizontal distance flown from the end of the belt to the jet
+  double stand_off = 75e-3;    ///< m, height of the body's centre above the nozzle as it crosses the axis
+  double arrives_at = 4e-3;    ///< s
+  double offset_along = 0.0;   ///< m, added to x (paper's primary axis)
+  double offset_across = 0.0;  ///< m, added to y
 };
 
 /// [[wall]]
@@ -215,20 +225,20 @@ struct WallSpec {
   std::string name;
   WallKind kind = WallKind::plane;
   Vec3 point{0, 0, 0};
-  Vec3 normal{0, 0, 1};          ///< towards the bodies
-  Vec3 size{0, 0, 0};            ///< plate: extents along its two tangents and thickness; box: edges
-  Vec3 velocity{0, 0, 0};        ///< surface velocity (belt)
+  Vec3 normal{0, 0, 1};    ///< towards the bodies
+  Vec3 size{0, 0, 0};      ///< plate: extents along its two tangents and thickness; box: edges
+  Vec3 velocity{0, 0, 0};  ///< surface velocity (belt)
   std::string material;
-  std::string file;              ///< mesh
+  std::string file;  ///< mesh
 };
 
 /// [splitter]: the dividing plate. A body is ejected when its centre passes above the edge.
 struct SplitterSpec {
   bool enabled = false;
-  double distance = 0.25;      ///< m, +x from the jet's axis to the edge
-  double height = 0.045;       ///< m, edge above the path of the undisturbed body there
-  double thickness = 2e-3;     ///< m
-  double length = 0.1;         ///< m, downstream extent
+  double distance = 0.25;   ///< m, +x from the jet's axis to the edge
+  double height = 0.045;    ///< m, edge above the path of the undisturbed body there
+  double thickness = 2e-3;  ///< m
+  double length = 0.1;      ///< m, downstream extent
 };
 
 /// [[probe]], [[line]], [[slice]]
@@ -276,14 +286,15 @@ struct ExactSpec {
 struct ExpectSpec {
   std::string quantity;  ///< JSON pointer into result.json, e.g. "/bodies/0/drag_coefficient"
   double reference = 0.0;
-  std::optional<double> tolerance;            ///< absolute
+  std::optional<double> tolerance;  ///< absolute
   std::optional<double> relative_tolerance;
   std::optional<double> at_least, at_most;
-  std::string text;                           ///< expected string instead of a number
+  std::string text;  ///< expected string instead of a number
   std::string source;
 };
 
-/// [convergence]: `ejecta validate` repeats the case with cells times each factor; result gets observed orders
+/// [convergence]: `ejecta validate` repeats the case with cells times each factor; result gets observed
+/// orders
 struct ConvergenceSpec {
   std::vector<double> factors;
   bool scale_time_step = true;

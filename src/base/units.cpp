@@ -1,0 +1,282 @@
+#include "base/units.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <numbers>
+
+#include "base/error.hpp"
+
+namespace ejecta {
+namespace {
+
+/// SI value = value * times / over + offset. Decimal fractions divide, because that rounds once, not twice.
+struct Unit {
+  std::string_view name;
+  double times = 1.0, over = 1.0, offset = 0.0;
+  bool shown = false;  ///< format_quantity may choose it
+};
+
+struct Entry {
+  Dimension dimension;
+  std::string_view words, example;
+  std::vector<Unit> units;  ///< SI first
+};
+
+constexpr double inch = 0.0254, psi = 6894.757293168, minute = 60.0;
+
+std::vector<Unit> pressure_units() {
+  return {{"Pa", 1, 1, 0, true},
+          {"kPa", 1e3, 1, 0, true},
+          {"MPa", 1e6, 1, 0, true},
+          {"GPa", 1e9, 1, 0, true},
+          {"hPa", 1e2},
+          {"mbar", 1e2},
+          {"bar", 1e5},
+          {"atm", 101325.0},
+          {"psi", psi}};
+}
+
+const std::vector<Entry>& table() {
+  using enum Dimension;
+  static const std::vector<Entry> entries{
+      {none, "a number without unit", "0.5", {}},
+      {length,
+       "a length",
+       "10 mm",
+       {{"m", 1, 1, 0, true},
+        {"mm", 1, 1e3, 0, true},
+        {"um", 1, 1e6, 0, true},
+        {"cm", 1, 1e2},
+        {"km", 1e3},
+        {"nm", 1, 1e9},
+        {"in", inch}}},
+      {area, "an area", "100 mm2", {{"m2", 1, 1, 0, true}, {"mm2", 1, 1e6, 0, true}, {"cm2", 1, 1e4}}},
+      {volume,
+       "a volume",
+       "1 cm3",
+       {{"m3", 1, 1, 0, true}, {"mm3", 1, 1e9, 0, true}, {"cm3", 1, 1e6}, {"L", 1, 1e3}}},
+      {time,
+       "a time",
+       "8 ms",
+       {{"s", 1, 1, 0, true},
+        {"ms", 1, 1e3, 0, true},
+        {"us", 1, 1e6, 0, true},
+        {"ns", 1, 1e9},
+        {"min", minute},
+        {"h", 3600.0}}},
+      {velocity,
+       "a velocity",
+       "3 m/s",
+       {{"m/s", 1, 1, 0, true},
+        {"mm/s", 1, 1e3},
+        {"cm/s", 1, 1e2},
+        {"km/h", 1, 3.6},
+        {"m/min", 1, minute},
+        {"ft/s", 0.3048}}},
+      {acceleration,
+       "an acceleration",
+       "9.81 m/s2",
+       {{"m/s2", 1, 1, 0, true}, {"mm/s2", 1, 1e3}, {"g", 9.80665}}},
+      {angle, "an angle", "45 deg", {{"rad", 1, 1, 0, true}, {"deg", std::numbers::pi, 180.0, 0, true}}},
+      {angular_velocity,
+       "an angular velocity",
+       "10 rad/s",
+       {{"rad/s", 1, 1, 0, true}, {"deg/s", std::numbers::pi, 180.0}, {"rpm", 2 * std::numbers::pi, minute}}},
+      {mass,
+       "a mass",
+       "2.7 g",
+       {{"kg", 1, 1, 0, true},
+        {"g", 1, 1e3, 0, true},
+        {"mg", 1, 1e6, 0, true},
+        {"t", 1e3},
+        {"lb", 0.45359237}}},
+      {density,
+       "a density",
+       "2700 kg/m3",
+       {{"kg/m3", 1, 1, 0, true}, {"g/cm3", 1e3}, {"t/m3", 1e3}, {"kg/L", 1e3}}},
+      {force, "a force", "0.5 N", {{"N", 1, 1, 0, true}, {"mN", 1, 1e3, 0, true}, {"kN", 1e3, 1, 0, true}}},
+      {pressure_gauge, "a pressure, gauge or absolute", "0 Pa gauge", pressure_units()},
+      {pressure_absolute, "a pressure, gauge or absolute", "700 kPa gauge", pressure_units()},
+      {pressure, "a pressure difference or modulus", "5 MPa", pressure_units()},
+      {temperature,
+       "a temperature",
+       "298.15 K",
+       {{"K", 1, 1, 0, true},
+        {"C", 1, 1, 273.15},
+        {"degC", 1, 1, 273.15},
+        {"F", 5, 9, 273.15 - 32 * 5 / 9.0}}},
+      {viscosity,
+       "a dynamic viscosity",
+       "1.85e-5 Pa s",
+       {{"Pa s", 1, 1, 0, true},
+        {"Pa.s", 1},
+        {"mPa s", 1, 1e3},
+        {"kg/m/s", 1},
+        {"cP", 1, 1e3},
+        {"P", 1, 10}}},
+      {frequency, "a frequency", "50 Hz", {{"Hz", 1, 1, 0, true}, {"kHz", 1e3, 1, 0, true}, {"1/s", 1}}},
+      {stiffness, "a stiffness", "1000 N/m", {{"N/m", 1, 1, 0, true}, {"kN/m", 1e3}, {"N/mm", 1e3}}},
+      {specific_energy, "a turbulent kinetic energy", "0.5 m2/s2", {{"m2/s2", 1, 1, 0, true}, {"J/kg", 1}}},
+      {dissipation_rate, "a dissipation rate", "10 m2/s3", {{"m2/s3", 1, 1, 0, true}, {"W/kg", 1}}},
+      {specific_heat,
+       "a specific heat or gas constant",
+       "287.05 J/kg/K",
+       {{"J/kg/K", 1, 1, 0, true}, {"kJ/kg/K", 1e3}, {"m2/s2/K", 1}}},
+  };
+  return entries;
+}
+
+const Entry& entry(Dimension d) {
+  for (const Entry& e : table())
+    if (e.dimension == d) return e;
+  throw Error("units: a dimension is missing in the table");
+}
+
+std::string_view trim(std::string_view s) {
+  const auto first = s.find_first_not_of(" \t");
+  if (first == std::string_view::npos) return {};
+  return s.substr(first, s.find_last_not_of(" \t") - first + 1);
+}
+
+bool is_referred(Dimension d) { return d == Dimension::pressure_gauge || d == Dimension::pressure_absolute; }
+
+constexpr std::string_view gauge = "gauge", absolute = "absolute";
+
+/// Takes the word "gauge" or "absolute" off the end of a unit.
+std::string_view take_reference(std::string_view& unit) {
+  for (std::string_view word : {gauge, absolute})
+    if (unit.ends_with(word) && unit.size() > word.size() && unit[unit.size() - word.size() - 1] == ' ') {
+      unit = trim(unit.substr(0, unit.size() - word.size()));
+      return word;
+    }
+  return {};
+}
+
+const Unit* find_unit(std::string_view name, Dimension d) {
+  for (const Unit& u : entry(d).units)
+    if (u.name == name) return &u;
+  return nullptr;
+}
+
+double apply(const Unit& u, double value) { return value * u.times / u.over + u.offset; }
+
+/// Splits "8 ms" or "8ms" after the longest number it starts with.
+std::pair<std::optional<double>, std::string_view> split(std::string_view text) {
+  text = trim(text);
+  if (text.starts_with('+')) text.remove_prefix(1);
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || !std::isfinite(value)) return {std::nullopt, text};
+  return {value, trim(text.substr(static_cast<std::size_t>(end - text.data())))};
+}
+
+std::string list_units(Dimension d) { return fmt::format("{}", fmt::join(known_units(d), ", ")); }
+
+std::size_t edit_distance(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    std::size_t diagonal = row[0];
+    row[0] = i;
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const std::size_t above = row[j];
+      row[j] = std::min({row[j] + 1, row[j - 1] + 1, diagonal + (a[i - 1] == b[j - 1] ? 0 : 1)});
+      diagonal = above;
+    }
+  }
+  return row[b.size()];
+}
+
+}  // namespace
+
+std::string_view si_unit(Dimension d) { return entry(d).units.empty() ? "" : entry(d).units.front().name; }
+
+std::vector<std::string> known_units(Dimension d) {
+  std::vector<std::string> names;
+  for (const Unit& u : entry(d).units) {
+    if (!is_referred(d)) names.emplace_back(u.name);
+    else
+      for (std::string_view word : {gauge, absolute}) names.push_back(fmt::format("{} {}", u.name, word));
+  }
+  return names;
+}
+
+std::string_view describe(Dimension d) { return entry(d).words; }
+std::string_view example(Dimension d) { return entry(d).example; }
+
+std::optional<double> to_si(double value, std::string_view unit, Dimension d) {
+  if (is_referred(d) && take_reference(unit) != (d == Dimension::pressure_gauge ? gauge : absolute))
+    return std::nullopt;
+  const Unit* u = find_unit(unit, d);
+  if (!u) return std::nullopt;
+  return apply(*u, value);
+}
+
+double parse_quantity(std::string_view text, Dimension d, double ambient) {
+  const auto [value, rest] = split(text);
+  if (!value) throw InputError(fmt::format("\"{}\" does not start with a finite number", text));
+  if (rest.empty())
+    throw InputError(fmt::format("\"{}\" has no unit (known units: {})", text, list_units(d)));
+  std::string_view unit = rest;
+  const std::string_view reference = take_reference(unit);
+  const Unit* u = find_unit(unit, d);
+  if (!u) {
+    const std::string close = nearest(rest, known_units(d));
+    throw InputError(fmt::format("unknown unit \"{}\"{} (known units: {})", rest,
+                                 close.empty() ? "" : fmt::format(", nearest is \"{}\"", close),
+                                 list_units(d)));
+  }
+  const double si = apply(*u, *value);
+  if (!std::isfinite(si)) throw InputError(fmt::format("\"{}\" is too large", text));
+  if (!is_referred(d)) {
+    if (!reference.empty())
+      throw InputError(fmt::format("\"{}\": a modulus or difference is neither gauge nor absolute", text));
+    return si;
+  }
+  if (reference.empty())
+    throw InputError(
+        fmt::format("\"{0}\" does not say gauge or absolute: \"{0} gauge\" or \"{0} absolute\"", trim(text)));
+  if (d == Dimension::pressure_gauge) return reference == gauge ? si : si - ambient;
+  return reference == absolute ? si : si + ambient;
+}
+
+std::string format_quantity(double si, Dimension d) {
+  if (entry(d).units.empty()) return fmt::format("{}", si);
+  const std::string_view word = d == Dimension::pressure_gauge      ? " gauge"
+                                : d == Dimension::pressure_absolute ? " absolute"
+                                                                    : "";
+  std::string best = fmt::format("{} {}{}", si, si_unit(d), word);
+  for (const Unit& u : entry(d).units) {
+    if (!u.shown) continue;
+    const double value = (si - u.offset) / u.times * u.over;
+    const std::string text = fmt::format("{:.12g} {}{}", value, u.name, word);
+    const bool readable = std::abs(value) >= 0.1 && std::abs(value) < 1e4;
+    if (readable && text.size() <= best.size() && parse_quantity(text, d) == si) best = text;
+  }
+  return best;
+}
+
+std::optional<double> parse_number(std::string_view text) {
+  const auto [value, rest] = split(text);
+  return rest.empty() ? value : std::nullopt;
+}
+
+std::string nearest(std::string_view word, const std::vector<std::string>& candidates) {
+  std::string best;
+  std::size_t least = std::max<std::size_t>(1, word.size() / 3) + 1;
+  for (const std::string& c : candidates) {
+    // The beginning of a longer word is a likely abbreviation, as near as one wrong letter.
+    const bool begins = word.size() > 2 && c.starts_with(word);
+    const std::size_t distance = begins ? 1 : edit_distance(word.substr(0, 100), c);
+    if (distance < least) {
+      least = distance;
+      best = c;
+    }
+  }
+  return best;
+}
+
+}  // namespace ejecta

@@ -1,0 +1,95 @@
+#include "case/load.hpp"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <memory>
+
+#include "base/error.hpp"
+#include "case/problem.hpp"
+#include "case/reader.hpp"
+#include "case/sense.hpp"
+#include "case/toml.hpp"
+
+namespace ejecta {
+namespace {
+
+constexpr std::size_t max_file_size = 4u << 20;
+
+std::string read_file(const std::string& path) {
+  std::error_code ignored;
+  const std::filesystem::path file(path);
+  if (!std::filesystem::exists(file, ignored))
+    throw InputError(fmt::format("{}: no such file\n  a first case:  ejecta new > my-case.toml", path));
+  if (std::filesystem::is_directory(file, ignored))
+    throw InputError(fmt::format("{}: is a directory; a case is a .toml file", path));
+  std::ifstream stream(path, std::ios::binary);
+  if (!stream) throw InputError(fmt::format("{}: cannot be read (permissions?)", path));
+  std::string text(max_file_size + 1, '\0');
+  stream.read(text.data(), static_cast<std::streamsize>(text.size()));
+  if (stream.bad()) throw InputError(fmt::format("{}: reading failed", path));
+  text.resize(static_cast<std::size_t>(stream.gcount()));
+  return text;
+}
+
+/// Refuses what cannot be a case before the parser sees it.
+void check_text(const std::string& text, const std::string& name) {
+  if (text.size() > max_file_size)
+    throw InputError(
+        fmt::format("{}: larger than {} MiB; a case is a short text (surfaces belong in an STL file)", name,
+                    max_file_size >> 20));
+  if (text.find_first_not_of(" \t\r\n") == std::string::npos)
+    throw InputError(fmt::format("{}: is empty\n  a first case:  ejecta new > my-case.toml", name));
+  for (char c : text) {
+    const auto u = static_cast<unsigned char>(c);
+    if (u == 0 || (u < 0x20 && c != '\t' && c != '\n' && c != '\r'))
+      throw InputError(fmt::format("{}: is not a text file (byte {:#04x}); a case is TOML", name, u));
+  }
+}
+
+void throw_if_any(const std::vector<Problem>& problems) {
+  if (!problems.empty()) throw InputError(render(problems));
+}
+
+/// What follows from other keys.
+void fill_in(Case& c) {
+  if (c.fluid.ideal_gas && c.fluid.density == 0.0)
+    c.fluid.density = c.environment.pressure / (c.fluid.gas_constant * c.environment.temperature);
+  for (std::size_t n = 0; n < c.bodies.size(); ++n)
+    if (c.bodies[n].name.empty()) c.bodies[n].name = fmt::format("body-{}", n + 1);
+  for (std::size_t n = 0; n < c.walls.size(); ++n)
+    if (c.walls[n].name.empty()) c.walls[n].name = fmt::format("wall-{}", n + 1);
+}
+
+}  // namespace
+
+Case parse_case(const std::string& text, const std::string& name, const std::vector<std::string>& overrides) {
+  check_text(text, name);
+  std::vector<Problem> problems;
+  Node root = parse_toml(std::make_shared<Source>(Source{name, text}), problems);
+  // Keys may be missing only because their line could not be read: say what is wrong with the rest, not that.
+  const bool syntax_errors = !problems.empty();
+  for (const std::string& assignment : overrides) apply_override(root, assignment, problems);
+  Case c;
+  c.path = name;
+  read_case(root, c, problems);
+  if (syntax_errors) std::erase_if(problems, [](const Problem& p) { return p.what == "missing"; });
+  throw_if_any(problems);
+
+  fill_in(c);
+  for (Problem& p : check_sense(c)) {
+    if (p.severity != Severity::error) continue;
+    p.place = locate(root, p.key);
+    problems.push_back(std::move(p));
+  }
+  throw_if_any(problems);
+  return c;
+}
+
+Case load_case(const std::string& path, const std::vector<std::string>& overrides) {
+  return parse_case(read_file(path), path, overrides);
+}
+
+}  // namespace ejecta

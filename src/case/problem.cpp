@@ -1,0 +1,64 @@
+#include "case/problem.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace ejecta {
+namespace {
+
+/// What may be printed: control characters would garble the terminal.
+std::string printable(std::string_view text) {
+  std::string out;
+  for (char c : text) {
+    const auto u = static_cast<unsigned char>(c);
+    if (c == '\t') out += ' ';
+    else if (u < 0x20 || u == 0x7f) out += '?';
+    else out += c;
+  }
+  return out;
+}
+
+/// The line, shortened around the caret if it is very long.
+std::string excerpt(const Place& place) {
+  constexpr std::size_t widest = 120;
+  std::string_view line = place.line();
+  std::size_t column = std::min(place.column(), line.size());
+  if (line.size() > widest) {
+    const std::size_t start = column > widest / 2 ? column - widest / 2 : 0;
+    line = line.substr(start, widest);
+    column -= start;
+  }
+  const std::size_t length = std::clamp<std::size_t>(place.text().substr(0, place.text().find('\n')).size(),
+                                                     1, std::max<std::size_t>(1, line.size() - column));
+  const std::string number = fmt::format("{:>5}", place.line_number());
+  return fmt::format("{} | {}\n{:>5} | {}^{}\n", number, printable(line), "", std::string(column, ' '),
+                     std::string(length - 1, '~'));
+}
+
+}  // namespace
+
+std::string render(const Problem& p) {
+  std::string text;
+  if (p.place.source) text += fmt::format("{}:{}: ", p.place.source->name, p.place.line_number());
+  text += p.severity == Severity::error ? "error: " : "warning: ";
+  if (!p.key.empty()) text += p.key + ": ";
+  text += printable(p.what) + "\n";
+  if (p.place.source) text += excerpt(p.place);
+  if (!p.expected.empty()) text += "  expected: " + p.expected + "\n";
+  if (!p.nearest.empty()) text += "  nearest:  " + p.nearest + "\n";
+  if (!p.example.empty()) text += "  example:  " + p.example + "\n";
+  return text;
+}
+
+std::string render(std::vector<Problem> problems) {
+  std::stable_sort(problems.begin(), problems.end(),
+                   [](const Problem& a, const Problem& b) { return a.place.offset < b.place.offset; });
+  std::string text;
+  for (const Problem& p : problems) text += render(p) + "\n";
+  const auto errors = std::count_if(problems.begin(), problems.end(),
+                                    [](const Problem& p) { return p.severity == Severity::error; });
+  return text + fmt::format("{} error{}", errors, errors == 1 ? "" : "s");
+}
+
+}  // namespace ejecta

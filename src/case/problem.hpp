@@ -1,0 +1,27 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "case/node.hpp"
+
+namespace ejecta {
+
+enum class Severity { error, warning };
+
+/// Something wrong with a case, with all that helps to mend it. Empty parts are not shown.
+struct Problem {
+  std::string key{};       ///< e.g. "body.0.diameter"
+  std::string what{};      ///< what is wrong
+  std::string expected{};  ///< what would be right
+  std::string nearest{};   ///< the known key or word most like what was written
+  std::string example{};   ///< a line that works
+  Severity severity = Severity::error;
+  Place place{};  ///< without source: shown without line and caret
+};
+
+/// The problem as the user sees it: file, line, key, the line itself with a caret, and the help.
+std::string render(const Problem&);
+/// All problems in the order of the file, and how many there are.
+std::string render(std::vector<Problem>);
+
+}  // namespace ejecta

@@ -1,0 +1,180 @@
+#include "case/read_value.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+
+#include "base/error.hpp"
+#include "case/expression.hpp"
+
+namespace ejecta {
+namespace {
+
+/// Reads one node for each kind of slot. Every method returns whether it succeeded and reports if not.
+class ValueReader {
+ public:
+  ValueReader(const Node& node, const Key& key, const std::string& path, double ambient,
+              std::vector<Problem>& problems)
+      : root_(node), key_(key), path_(path), ambient_(ambient), problems_(problems) {}
+
+  bool operator()(bool* out) { return plain<bool>(root_, *out); }
+  bool operator()(std::string* out) { return plain<std::string>(root_, *out); }
+  bool operator()(int* out) { return integer(root_, *out); }
+  bool operator()(std::int64_t* out) { return integer(root_, *out); }
+  bool operator()(double* out) { return number(root_, *out); }
+  bool operator()(std::optional<double>* out) { return number(root_, out->emplace()); }
+  bool operator()(Vec3* out) { return vector(root_, *out); }
+  bool operator()(std::vector<double>* out) { return items(root_, *out, &ValueReader::number); }
+  bool operator()(std::vector<int>* out) { return items(root_, *out, &ValueReader::integer<int>); }
+  bool operator()(std::vector<std::string>* out) {
+    return items(root_, *out, &ValueReader::plain<std::string>);
+  }
+  bool operator()(std::array<int, 3>* out) { return fixed(root_, *out, &ValueReader::integer<int>); }
+  bool operator()(std::array<double, 2>* out) { return fixed(root_, *out, &ValueReader::number); }
+  bool operator()(std::vector<std::array<double, 4>>* out) { return items(root_, *out, &ValueReader::four); }
+  bool operator()(std::vector<Vec3>* out) { return items(root_, *out, &ValueReader::vector); }
+  bool operator()(std::optional<std::array<Vec3, 2>>* out) {
+    return fixed(root_, out->emplace(), &ValueReader::vector);
+  }
+  bool operator()(const Formula& f) { return formula(root_, f.text ? *f.text : f.optional->emplace()); }
+  bool operator()(const Formulas& f) {
+    return fixed(root_, f.text ? *f.text : f.optional->emplace(), &ValueReader::formula);
+  }
+  bool operator()(const Choice& choice) {
+    std::string name;
+    if (!plain<std::string>(root_, name)) return false;
+    std::vector<std::string> known;
+    for (std::size_t i = 0; i < choice.words->size(); ++i) {
+      known.push_back((*choice.words)[i].name);
+      if (known.back() == name) {
+        choice.set(i);
+        return true;
+      }
+    }
+    return fail(root_, fmt::format("unknown word \"{}\"", name), nearest(name, known));
+  }
+
+ private:
+  bool fail(const Node& node, const std::string& what, const std::string& closest = "") {
+    problems_.push_back({.key = path_,
+                         .what = what,
+                         .expected = expectation(key_),
+                         .nearest = closest,
+                         .example = key_.name + " = " + example(key_),
+                         .place = node.place});
+    return false;
+  }
+
+  template <class T>
+  bool plain(const Node& node, T& out) {
+    const T* value = std::get_if<T>(&node.value);
+    if (!value) return fail(node, kind_words(node) + " does not fit here");
+    out = *value;
+    return true;
+  }
+
+  template <class T>
+  bool integer(const Node& node, T& out) {
+    const auto* value = std::get_if<std::int64_t>(&node.value);
+    if (!value) return fail(node, kind_words(node) + " is no whole number");
+    if (*value < std::numeric_limits<T>::min() || *value > std::numeric_limits<T>::max())
+      return fail(node, fmt::format("{} is too large", *value));
+    out = static_cast<T>(*value);
+    return in_range(node, static_cast<double>(*value));
+  }
+
+  bool number(const Node& node, double& out) {
+    const auto* whole = std::get_if<std::int64_t>(&node.value);
+    const auto* real = std::get_if<double>(&node.value);
+    const auto* text = std::get_if<std::string>(&node.value);
+    if (key_.dimension == Dimension::none) {
+      if (!whole && !real)
+        return fail(node,
+                    kind_words(node) + (text ? " is no bare number (no quotes here)" : " is no number"));
+      out = whole ? static_cast<double>(*whole) : *real;
+      if (!std::isfinite(out)) return fail(node, "not a finite number");
+      return in_range(node, out);
+    }
+    if (whole || real) return fail(node, fmt::format("{} has no unit", kind_words(node)));
+    if (!text) return fail(node, kind_words(node) + " is no quantity");
+    return quantity(node, *text, out) && in_range(node, out);
+  }
+
+  bool quantity(const Node& node, const std::string& text, double& out) {
+    try {
+      out = parse_quantity(text, key_.dimension, ambient_);
+    } catch (const InputError& e) {
+      return fail(node, e.what());
+    }
+    if (std::isnan(out)) return fail(node, "the ambient pressure itself cannot be gauge");
+    return true;
+  }
+
+  bool in_range(const Node& node, double v) {
+    const Bounds& b = key_.bounds;
+    if ((b.open ? v > b.least : v >= b.least) && v <= b.most) return true;
+    return fail(node, fmt::format("{} is out of range", node.place.text()));
+  }
+
+  bool formula(const Node& node, std::string& out) {
+    const auto* text = std::get_if<std::string>(&node.value);
+    const auto first = text ? text->find_first_not_of(" \t") : std::string::npos;
+    if (first == std::string::npos || (*text)[first] != '=') {
+      double value = 0.0;
+      if (!number(node, value)) return false;
+      out = fmt::format("{}", value);
+      return true;
+    }
+    const auto start = text->find_first_not_of(" \t", first + 1);
+    out = start == std::string::npos ? "" : text->substr(start);
+    try {
+      Expression check(out);
+      return true;
+    } catch (const InputError& e) {
+      return fail(node, e.what());
+    }
+  }
+
+  template <class Out, class Element>
+  bool fixed(const Node& node, Out& out, bool (ValueReader::*read)(const Node&, Element&)) {
+    if (!node.is_list() || node.children.size() != out.size())
+      return fail(node, fmt::format("{} instead of a list of {}", kind_words(node), out.size()));
+    bool good = true;
+    for (std::size_t i = 0; i < out.size(); ++i) good = (this->*read)(node.children[i], out[i]) && good;
+    return good;
+  }
+
+  template <class Element>
+  bool items(const Node& node, std::vector<Element>& out, bool (ValueReader::*read)(const Node&, Element&)) {
+    out.clear();
+    if (!node.is_list()) return (this->*read)(node, out.emplace_back());  // a list of one may be written bare
+    bool good = true;
+    for (const Node& child : node.children) good = (this->*read)(child, out.emplace_back()) && good;
+    return good;
+  }
+
+  bool vector(const Node& node, Vec3& out) {
+    std::array<double, 3> parts{};
+    if (!fixed(node, parts, &ValueReader::number)) return false;
+    out = Vec3(parts[0], parts[1], parts[2]);
+    return true;
+  }
+
+  bool four(const Node& node, std::array<double, 4>& out) { return fixed(node, out, &ValueReader::number); }
+
+  const Node& root_;
+  const Key& key_;
+  const std::string& path_;
+  double ambient_;
+  std::vector<Problem>& problems_;
+};
+
+}  // namespace
+
+void read_value(const Node& node, const Key& key, const std::string& path, double ambient,
+                std::vector<Problem>& problems) {
+  std::visit(ValueReader(node, key, path, ambient, problems), key.slot);
+}
+
+}  // namespace ejecta

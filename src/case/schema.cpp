@@ -1,0 +1,77 @@
+#include "case/schema.hpp"
+
+namespace ejecta {
+namespace {
+
+template <class Spec>
+Section table(std::string name, std::string help, Spec& spec, bool* enabled = nullptr) {
+  return {.name = std::move(name),
+          .help = std::move(help),
+          .repeated = false,
+          .count = [] { return std::size_t{1}; },
+          .append = {},
+          .keys = [&spec](std::size_t) { return keys(spec); },
+          .enabled = enabled};
+}
+
+template <class Spec, class... More>
+Section list(std::string name, std::string help, std::vector<Spec>& specs, More... more) {
+  return {.name = std::move(name),
+          .help = std::move(help),
+          .repeated = true,
+          .count = [&specs] { return specs.size(); },
+          .append = [&specs] { specs.emplace_back(); },
+          .keys = [&specs, more...](std::size_t n) { return keys(specs.at(n), more()...); }};
+}
+
+}  // namespace
+
+std::vector<Section> sections(Case& c) {
+  // Read when the keys are asked for: by then the solver is known.
+  const auto pressure = [&c] {
+    return c.flow.solver == FlowSolver::incompressible ? Dimension::pressure_gauge
+                                                       : Dimension::pressure_absolute;
+  };
+  std::vector<Section> all{table("run", "How long and how finely in time", c.run),
+                           table("environment", "The still surroundings", c.environment),
+                           table("fluid", "What the fluid is; air by default", c.fluid),
+                           table("flow", "How the fluid is computed", c.flow),
+                           table("grid", "The box that is computed", c.grid)};
+  for (std::size_t a = 0; a < 3; ++a)
+    all.push_back(table(std::string("grid.") + axis_names[a], std::string("Cells along ") + axis_names[a],
+                        c.grid.axis[a]));
+  for (std::size_t f = 0; f < 6; ++f) {
+    const std::string name = std::string("boundary.") + face_names[f];
+    BoundarySpec& face = c.boundary[f];
+    Section section = table(name, std::string("The face of the box at ") + face_names[f], c.run);
+    section.keys = [&face, pressure](std::size_t) { return keys(face, pressure()); };
+    all.push_back(section);
+    all.push_back(
+        list(name + ".patch", "A disc on that face with a type of its own", face.patches, pressure));
+  }
+  Section exact = table("exact", "Exact solution, for error norms", c.run);
+  exact.keys = [&c, pressure](std::size_t) { return keys(c.exact, pressure()); };
+
+  for (Section& s : std::vector<Section>{
+           list("initial", "State at the start, region by region; later ones win", c.initial, pressure),
+           table("valve", "The valve and its nozzle", c.valve),
+           table("jet", "The jet that enters through a boundary of type \"jet\"", c.jet),
+           list("material", "Solid materials", c.materials),
+           list("material_pair", "Overrides for the contact of two materials", c.material_pairs),
+           table("contact", "How bodies touch", c.contact), list("body", "Bodies", c.bodies),
+           table("launch", "Flight from the belt to the jet", c.launch, &c.launch.enabled),
+           list("wall", "Walls that bodies meet", c.walls),
+           table("splitter", "The dividing plate", c.splitter, &c.splitter.enabled),
+           table("stream", "Free stream for drag coefficients", c.stream, &c.stream.enabled),
+           list("probe", "Points recorded in history/", c.probes),
+           list("line", "Lines recorded in history/", c.lines),
+           list("slice", "Planes recorded in fields/", c.slices),
+           table("output", "What is written, and how often", c.output),
+           table("checkpoint", "When the state is saved for --resume", c.checkpoint), exact,
+           list("expect", "What `ejecta validate` compares with result.json", c.expects),
+           table("convergence", "Repetition on finer grids", c.convergence)})
+    all.push_back(std::move(s));
+  return all;
+}
+
+}  // namespace ejecta

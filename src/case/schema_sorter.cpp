@@ -1,0 +1,89 @@
+#include "case/schema.hpp"
+
+/// What the machine does: valve, jet, launch, splitter.
+namespace ejecta {
+
+using enum Dimension;
+
+std::vector<Key> keys(ValveSpec& s) {
+  return {{"supply_pressure", &s.supply_pressure, pressure_absolute, positive,
+           "Pressure upstream of the nozzle", "paper 2.1: 700 kPa gauge"},
+          {"supply_temperature", &s.supply_temperature, temperature, not_negative,
+           "Temperature upstream of the nozzle", "", "ambient"},
+          {"orifice_diameter", &s.orifice_diameter, length, positive, "Effective diameter of the orifice",
+           "assumption: not in the paper; 880 m/s, Mach 0.35 at 75 mm imply 1.55 to 1.9 mm"},
+          {"nozzle_length", &s.nozzle_length, length, not_negative, "Straight part before the exit", ""},
+          {"nozzle_inlet_diameter", &s.nozzle_inlet_diameter, length, not_negative,
+           "Diameter where the nozzle begins", "", "straight"},
+          {"discharge_coefficient",
+           &s.discharge_coefficient,
+           none,
+           {0.0, 1.0, true},
+           "Mass flow relative to the ideal choked nozzle",
+           "assumption: ideal"},
+          {"opens_at", &s.opens_at, time, not_negative, "Time of the command to open", ""},
+          {"duration", &s.duration, time, not_negative, "Length of the command", "paper: 8 ms blasts"},
+          {"delay", &s.delay, time, not_negative, "From the command to the first movement", ""},
+          {"rise_time", &s.rise_time, time, not_negative, "From closed to fully open",
+           "paper, Fig. 9: maximum after 6 to 7 ms"},
+          {"fall_time", &s.fall_time, time, not_negative, "From fully open to closed", "assumption"},
+          {"shape", choice(s.shape), none, anything, "How the opening changes during rise and fall", ""},
+          {.name = "trace",
+           .slot = &s.trace,
+           .help = "CSV file with the columns time (s) and opening (0 to 1), for shape \"trace\"",
+           .unset = "none",
+           .example = "\"opening.csv\""},
+          {.name = "more_pulses",
+           .slot = &s.more_pulses,
+           .dimension = time,
+           .bounds = not_negative,
+           .help = "Further times at which the same command is given",
+           .unset = "none",
+           .example = R"(["20 ms", "40 ms"])"}};
+}
+
+std::vector<Key> keys(JetSpec& s) {
+  return {{"kind", choice(s.kind), none, anything,
+           "Where the jet that enters through a \"jet\" boundary comes from", ""},
+          {"nozzle", &s.nozzle, length, anything, "Centre of the orifice; the jet blows along +z", ""},
+          {"velocity_decay", &s.velocity_decay, none, positive, "B in U_c/U_0 = B d/(z - z0)",
+           "Hussein et al. 1994, Panchapakesan & Lumley 1993: 5.8 to 6.1"},
+          {"spreading", &s.spreading, none, positive, "S = r_half/(z - z0)", "Hussein et al. 1994"},
+          {"virtual_origin", &s.virtual_origin, none, anything, "z0/d", "Panchapakesan & Lumley 1993"},
+          {"inlet_velocity", &s.inlet_velocity, velocity, not_negative,
+           "Uniform exit velocity, for \"velocity-inlet\"", "", "momentum-equivalent of the choked nozzle"},
+          {"turbulence_intensity", &s.turbulence_intensity, none, fraction, "Of a \"velocity-inlet\"",
+           "assumption"},
+          {.name = "source_case",
+           .slot = &s.source_case,
+           .help = "Case that computes the jet, for \"computed\"",
+           .unset = "none",
+           .example = "\"jet.toml\""}};
+}
+
+std::vector<Key> keys(LaunchSpec& s) {
+  return {
+      {"belt_speed", &s.belt_speed, velocity, not_negative,
+       "Speed along +x with which the body leaves the belt", "paper 2.1"},
+      {"drop_distance", &s.drop_distance, length, not_negative,
+       "Horizontal distance flown from the end of the belt to the jet", "assumption"},
+      {"stand_off", &s.stand_off, length, anything,
+       "Height of the body's centre above the nozzle as it crosses the jet's axis", "paper 3.1"},
+      {"arrives_at", &s.arrives_at, time, not_negative, "When the undisturbed body crosses the jet's axis",
+       ""},
+      {"offset_along", &s.offset_along, length, anything,
+       "Moves the path along the belt: positive is later than the jet", "paper 3.2"},
+      {"offset_across", &s.offset_across, length, anything, "Moves the path across the belt", "paper 3.2"}};
+}
+
+std::vector<Key> keys(SplitterSpec& s) {
+  return {{"distance", &s.distance, length, positive,
+           "From the jet's axis to the edge of the plate, along +x", "assumption: not in the paper"},
+          {"height", &s.height, length, anything,
+           "Edge above the undisturbed path there; a centre that passes above it is ejected",
+           "assumption: not in the paper"},
+          {"thickness", &s.thickness, length, not_negative, "Thickness of the plate", "assumption"},
+          {"length", &s.length, length, not_negative, "Extent of the plate downstream", "assumption"}};
+}
+
+}  // namespace ejecta

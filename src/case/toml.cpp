@@ -1,0 +1,168 @@
+#include "case/toml.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <sstream>
+#include <toml.hpp>
+
+// The only file that includes toml11: it is slow to compile.
+namespace ejecta {
+namespace {
+
+constexpr int max_syntax_errors = 20;
+constexpr int max_nesting = 32;  // toml11 recurses: deeper brackets would exhaust the stack
+
+Place place_of(const toml::value& v, const std::shared_ptr<const Source>& source) {
+  Place place{source, 0, 0};
+  if (const auto* region = dynamic_cast<const toml::detail::region*>(toml::detail::get_region(v))) {
+    place.offset = static_cast<std::size_t>(std::distance(region->begin(), region->first()));
+    place.length = region->size();
+  }
+  return place;
+}
+
+Node convert(const toml::value& v, const std::shared_ptr<const Source>& source) {
+  Node node;
+  node.place = place_of(v, source);
+  switch (v.type()) {
+    case toml::value_t::boolean:
+      node.value = v.as_boolean();
+      break;
+    case toml::value_t::integer:
+      node.value = std::int64_t{v.as_integer()};
+      break;
+    case toml::value_t::floating:
+      node.value = v.as_floating();
+      break;
+    case toml::value_t::string:
+      node.value = v.as_string().str;
+      break;
+    case toml::value_t::array:
+      node.value = Node::List{};
+      for (const toml::value& element : v.as_array()) node.children.push_back(convert(element, source));
+      break;
+    case toml::value_t::table:
+      node.value = Node::Table{};
+      for (const auto& [key, child] : v.as_table()) {
+        node.children.push_back(convert(child, source));
+        node.children.back().key = key;
+      }
+      std::sort(node.children.begin(), node.children.end(), [](const Node& a, const Node& b) {
+        return a.place.offset != b.place.offset ? a.place.offset < b.place.offset : a.key < b.key;
+      });
+      break;
+    default:
+      node.value = std::string(node.place.text());
+      break;  // dates: no key takes one, the reader says so
+  }
+  return node;
+}
+
+/// The deepest unclosed '[' or '{', strings not excepted.
+bool nested_too_deeply(const std::string& text, std::size_t& where) {
+  int depth = 0;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if (text[i] == '[' || text[i] == '{') ++depth;
+    else if ((text[i] == ']' || text[i] == '}') && depth > 0) --depth;
+    if (depth > max_nesting) {
+      where = i;
+      return true;
+    }
+  }
+  return false;
+}
+
+/// toml11's message without its prefix and drawing.
+std::string plain_message(const std::string& what) {
+  std::string line = what.substr(0, what.find('\n'));
+  if (line.starts_with("[error] ")) line.erase(0, 8);
+  if (const auto colon = line.find(": "); line.starts_with("toml::") && colon != std::string::npos)
+    line.erase(0, colon + 2);
+  return line;
+}
+
+/// Says what is most often meant by a line that is no TOML.
+void advise(Problem& p, std::string_view line) {
+  const auto equals = line.find('=');
+  const auto value =
+      equals == std::string_view::npos ? std::string_view::npos : line.find_first_not_of(" \t", equals + 1);
+  if (value == std::string_view::npos) {
+    p.expected = "[section], [[list]] or key = value";
+    p.example = "end_time = \"8 ms\"";
+    return;
+  }
+  const std::string key(line.substr(0, equals));
+  std::string rest(line.substr(value, line.find('#', value) - value));
+  rest.erase(rest.find_last_not_of(" \t\r") + 1);
+  if (rest.find('"') == std::string::npos && rest.find('[') == std::string::npos && !rest.empty()) {
+    p.expected = "quotes around words and quantities";
+    p.example = fmt::format("{}= \"{}\"", key, rest);
+  } else {
+    p.expected =
+        "a \"text\", a \"quantity with unit\", a number, true, false or a [list], with matching quotes and "
+        "brackets";
+    p.example = "position = [\"0 mm\", \"0 mm\", \"75 mm\"]";
+  }
+}
+
+std::size_t line_start(const std::string& text, std::size_t line_number) {
+  std::size_t at = 0;
+  for (std::size_t n = 1; n < line_number; ++n) {
+    const auto end = text.find('\n', at);
+    if (end == std::string::npos) break;
+    at = end + 1;
+  }
+  return at;
+}
+
+Problem syntax_problem(const toml::exception& e, const std::shared_ptr<const Source>& source,
+                       std::size_t start) {
+  Problem p{.what = "not TOML: " + plain_message(e.what())};
+  p.place = {source, start, 1};
+  const std::string_view line = p.place.line();
+  const std::size_t column = std::min<std::size_t>(e.location().column() - 1, line.size());
+  p.place.offset += column;
+  p.place.length = std::max<std::size_t>(1, line.size() - column);
+  advise(p, line);
+  return p;
+}
+
+/// Blanks the line that starts at `start`; true if it was not blank already.
+bool blank_line(std::string& text, std::size_t start) {
+  bool changed = false;
+  for (std::size_t i = start; i < text.size() && text[i] != '\n'; ++i) {
+    changed = changed || text[i] != ' ';
+    text[i] = ' ';
+  }
+  return changed;
+}
+
+}  // namespace
+
+Node parse_toml(std::shared_ptr<const Source> source, std::vector<Problem>& problems) {
+  Node empty;
+  empty.place = {source, 0, 0};
+  if (std::size_t where = 0; nested_too_deeply(source->text, where)) {
+    problems.push_back({.what = "brackets nested too deeply", .place = {source, where, 1}});
+    return empty;
+  }
+  std::string text = source->text;
+  if (!text.ends_with('\n')) text += '\n';
+  for (int n = 0; n < max_syntax_errors; ++n) {
+    std::istringstream stream(text);
+    try {
+      return convert(toml::parse(stream, source->name), source);
+    } catch (const toml::exception& e) {
+      const std::size_t start = line_start(text, e.location().line());
+      problems.push_back(syntax_problem(e, source, start));
+      if (!blank_line(text, start)) break;
+    } catch (const std::exception& e) {  // out of range numbers and the like
+      problems.push_back({.what = fmt::format("not TOML: {}", e.what()), .place = {source, 0, 1}});
+      break;
+    }
+  }
+  return empty;
+}
+
+}  // namespace ejecta

@@ -1,0 +1,108 @@
+#include "case/words.hpp"
+
+namespace ejecta {
+
+const std::vector<Word>& words(FlowSolver) {
+  static const std::vector<Word> list{
+      {"none", "no fluid: bodies move under gravity and contacts alone"},
+      {"incompressible", "PISO (Issa 1986): liquids, and gases below about Mach 0.3"},
+      {"compressible", "Godunov, density based: shocks, the under-expanded jet near its nozzle"},
+      {"compressible-piso",
+       "pressure based, any Mach number below about 0.8: steps limited by the flow, not by sound"}};
+  return list;
+}
+
+const std::vector<Word>& words(TurbulenceModel) {
+  static const std::vector<Word> list{
+      {"laminar", "no model"},
+      {"k-epsilon", "standard k-epsilon with wall functions (Launder & Spalding 1974)"},
+      {"k-omega-sst", "k-omega SST (Menter 1994)"}};
+  return list;
+}
+
+const std::vector<Word>& words(Geometry) {
+  static const std::vector<Word> list{
+      {"cartesian", "a box in x, y, z; an axis with one cell makes it two-dimensional"},
+      {"axisymmetric", "x is the radius, z the axis; y has one cell"}};
+  return list;
+}
+
+const std::vector<Word>& words(BoundaryType) {
+  static const std::vector<Word> list{
+      {"velocity", "fixed velocity (and k, epsilon, temperature), zero-gradient pressure"},
+      {"total-pressure", "a reservoir that blows in at its total pressure and temperature"},
+      {"pressure-outlet", "fixed static pressure, zero-gradient velocity; what flows back in is at rest"},
+      {"wave-transmissive", "lets sound out without reflection (compressible)"},
+      {"free-stream", "ambient pressure; air may be drawn in or leave"},
+      {"wall", "no slip, at rest"},
+      {"moving-wall", "no slip at the velocity given"},
+      {"slip", "no flow through, no friction"},
+      {"symmetry", "mirror plane"},
+      {"periodic", "joined with the opposite face"},
+      {"jet", "the valve's jet enters here, see [jet] and [valve]; elsewhere as free-stream"}};
+  return list;
+}
+
+const std::vector<Word>& words(JetKind) {
+  static const std::vector<Word> list{
+      {"self-similar",
+       "round turbulent jet with the momentum of the valve, cut at the height of the boundary"},
+      {"velocity-inlet", "uniform velocity through the orifice itself; the box starts at the nozzle"},
+      {"computed", "the stored result of another case, the jet from its nozzle"}};
+  return list;
+}
+
+const std::vector<Word>& words(ValveShape) {
+  static const std::vector<Word> list{{"linear", "straight ramps"},
+                                      {"smooth", "cosine ramps"},
+                                      {"exponential", "first-order lag"},
+                                      {"trace", "opening read from a CSV file"}};
+  return list;
+}
+
+const std::vector<Word>& words(ShapeKind) {
+  static const std::vector<Word> list{
+      {"sphere", "`diameter`"},
+      {"box", "cuboid of edge lengths `size`"},
+      {"multisphere", "union of `spheres`"},
+      {"cluster", "regular pattern of spheres inside `size`, as the paper's 27- and 9-sphere particles"},
+      {"polyhedron", "convex hull of `vertices`"},
+      {"mesh", "closed surface from the STL `file`"},
+      {"superquadric", "`size` and `exponents`"}};
+  return list;
+}
+
+const std::vector<Word>& words(Motion) {
+  static const std::vector<Word> list{{"free", "moves under all forces"},
+                                      {"fixed", "stays where it is"},
+                                      {"prescribed", "keeps its velocity and spin whatever acts"}};
+  return list;
+}
+
+const std::vector<Word>& words(ContactLaw) {
+  static const std::vector<Word> list{
+      {"hertz-mindlin",
+       "Hertz normal force, Mindlin tangential force with history (Johnson 1985, Mindlin 1949)"},
+      {"linear", "linear spring and dashpot"}};
+  return list;
+}
+
+const std::vector<Word>& words(WallKind) {
+  static const std::vector<Word> list{
+      {"plane", "half space behind `point`, facing `normal`"},
+      {"plate", "thin rectangle of extents `size` at `point`, facing `normal`"},
+      {"box", "cuboid of edges `size` centred at `point`"},
+      {"belt", "plate whose surface runs with `velocity`"},
+      {"mesh", "surface from the STL `file`"}};
+  return list;
+}
+
+const std::vector<Word>& words(RunUntil) {
+  static const std::vector<Word> list{
+      {"time", "up to end_time"},
+      {"verdict", "until every body has passed the splitter, at most end_time"},
+      {"rest", "until every body has come to rest, at most end_time"}};
+  return list;
+}
+
+}  // namespace ejecta

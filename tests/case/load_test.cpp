@@ -1,0 +1,127 @@
+#include "case/load.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "base/error.hpp"
+#include "case/write.hpp"
+
+using namespace ejecta;
+using testing::HasSubstr;
+
+namespace {
+
+const std::string paper = R"toml(
+[run]
+title = "one ejection"
+until = "verdict"
+end_time = "120 ms"
+courant = 1.2
+
+[environment]
+pressure = "101325 Pa absolute"
+
+[flow]
+turbulence = "k-epsilon"
+
+[grid.x]
+points = ["-60 mm", "-10 mm", "10 mm", "60 mm"]
+cells = [40, 40, 40]
+grading = [0.25, 1, 4]
+[grid.y]
+points = ["-40 mm", "40 mm"]
+cells = 80
+[grid.z]
+points = ["40 mm", "120 mm"]
+cells = [90]
+
+[boundary.z_min]
+type = "jet"
+[boundary.z_max]
+type = "free-stream"
+pressure = "0 Pa gauge"
+
+[[boundary.x_min.patch]]
+type = "velocity"
+centre = ["-60 mm", "0 mm", "50 mm"]
+radius = "2 mm"
+velocity = ["= 3 * step(t - 1e-3)", "0 m/s", "1 cm/s"]
+
+[[initial]]
+pressure = "101.325 kPa absolute"
+
+[valve]
+supply_pressure = "700 kPa gauge"
+
+[[body]]
+name = "cube"
+shape = "cluster"
+size = ["10 mm", "10 mm", "10 mm"]
+sphere_diameter = "5 mm"
+on_belt = true
+
+[[body]]
+shape = "multisphere"
+spheres = [["0 mm", "0 mm", "0 mm", "5 mm"], ["4 mm", "0 mm", "0 mm", "3 mm"]]
+position = ["30 mm", "0 mm", "100 mm"]
+rotation_angle = "90 deg"
+
+[launch]
+stand_off = "75 mm"
+
+[splitter]
+)toml";
+
+TEST(LoadCase, ReadsQuantitiesIntoSi) {
+  const Case c = parse_case(paper, "paper.toml");
+  EXPECT_EQ(c.run.until, RunUntil::verdict);
+  EXPECT_DOUBLE_EQ(c.run.end_time, 0.12);
+  EXPECT_EQ(c.run.courant, 1.2);
+  EXPECT_EQ(c.grid.axis[0].points, (std::vector{-0.06, -0.01, 0.01, 0.06}));
+  EXPECT_EQ(c.grid.axis[1].cells, std::vector{80});
+  EXPECT_EQ(c.valve.supply_pressure, 801325.0);
+  EXPECT_EQ(c.boundary[4].type, BoundaryType::jet);
+  EXPECT_EQ(c.boundary[0].patches.at(0).state.velocity->at(0), "3 * step(t - 1e-3)");
+  EXPECT_EQ(c.boundary[0].patches.at(0).state.velocity->at(2), "0.01");
+  EXPECT_EQ(c.initial.at(0).state.pressure, "0") << "incompressible flow holds gauge pressure";
+  EXPECT_TRUE(c.launch.enabled);
+  EXPECT_TRUE(c.splitter.enabled);
+  EXPECT_FALSE(c.stream.enabled);
+  EXPECT_EQ(c.bodies.at(1).name, "body-2");
+  EXPECT_EQ(c.bodies[1].spheres.at(1)[3], 0.003);
+  EXPECT_NEAR(c.fluid.density, 1.1839, 1e-4);
+}
+
+TEST(LoadCase, GaugeIsRelativeToTheAmbientPressure) {
+  const Case c = parse_case(paper, "paper.toml", {"environment.pressure=90 kPa absolute"});
+  EXPECT_EQ(c.valve.supply_pressure, 790000.0);
+}
+
+TEST(LoadCase, OverridesReachListElementsByNumberAndName) {
+  const Case c = parse_case(
+      paper, "paper.toml",
+      {"body.1.position=[\"1 mm\", \"2 mm\", \"100 mm\"]", "body.cube.mass=2.7 g", "run.courant=0.8"});
+  EXPECT_EQ(c.bodies[1].position, Vec3(0.001, 0.002, 0.1));
+  EXPECT_EQ(c.bodies[0].mass, 0.0027);
+  EXPECT_EQ(c.run.courant, 0.8);
+}
+
+TEST(LoadCase, WhatIsWrittenIsReadBackToTheSameText) {
+  const std::string once = write_case(parse_case(paper, "paper.toml"));
+  const std::string twice = write_case(parse_case(once, "resolved.toml"));
+  EXPECT_EQ(once, twice);
+}
+
+TEST(LoadCase, AllErrorsOfAFileAtOnce) {
+  try {
+    parse_case("[run]\nend_time = 8\ncouran = 1\n[flow]\nturbulence = \"k-omega\"\n", "x.toml");
+    FAIL() << "accepted";
+  } catch (const InputError& e) {
+    EXPECT_THAT(e.what(), HasSubstr("x.toml:2"));
+    EXPECT_THAT(e.what(), HasSubstr("x.toml:3"));
+    EXPECT_THAT(e.what(), HasSubstr("x.toml:5"));
+    EXPECT_THAT(e.what(), HasSubstr("3 errors"));
+  }
+}
+
+}  // namespace
