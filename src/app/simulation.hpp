@@ -1,0 +1,31 @@
+#pragma once
+#include <string>
+
+#include "case/case.hpp"
+
+namespace ejecta {
+
+struct RunOptions {
+  std::string out;  ///< run directory; empty: the name of the case with ".run", where the command was given
+  int threads = 0;  ///< 0: as many as the machine has
+  bool resume = false;
+  bool force = false;    ///< overwrite a run directory
+  bool dry_run = false;  ///< set everything up, take no step
+  bool quiet = false, verbose = false;
+};
+
+struct BenchOptions {
+  int threads = 0;
+  int steps = 20;  ///< timed steps
+};
+
+/// Runs a case into its run directory. Returns an ExitCode.
+int run_case(const Case& c, const RunOptions& options);
+/// Prints the operators of a step with their equations. Returns an ExitCode.
+int plan_case(const Case& c);
+/// Computes only the jet of a case and stores it. Returns an ExitCode.
+int jet_case(const Case& c, const RunOptions& options);
+/// Measures cell-steps per second on the standard case. Returns an ExitCode.
+int bench(const BenchOptions& options);
+
+}  // namespace ejecta
