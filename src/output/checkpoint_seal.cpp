@@ -1,0 +1,87 @@
+#include "output/checkpoint_seal.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+#include <memory>
+
+#include "base/error.hpp"
+#include "output/output_file.hpp"
+#include "output/sha256.hpp"
+
+namespace ejecta::output {
+namespace {
+
+struct Seal {
+  std::array<char, 16> magic{'E', 'J', 'E', 'C', 'T', 'A', ' ', 'C', 'H', 'E', 'C', 'K', 'P', 'O', 'I', 'N'};
+  std::uint32_t version = kCheckpointVersion;
+  std::uint32_t reserved = 0;
+  std::uint64_t bytes = 0;  // of the whole file
+  double time = 0.0;
+  std::int64_t step = 0;
+  std::array<std::uint8_t, 32> digest{};  // of the seal with an empty digest, then of all after its 512 bytes
+};
+static_assert(sizeof(Seal) == 80 && std::is_trivially_copyable_v<Seal>);
+
+struct CloseFile {
+  void operator()(std::FILE* f) const { std::fclose(f); }
+};
+using File = std::unique_ptr<std::FILE, CloseFile>;
+
+File open(const std::filesystem::path& path, const char* mode) {
+  File file(std::fopen(path.c_str(), mode));
+  if (!file) throw_system_error("cannot open", path);
+  return file;
+}
+
+/// Digest of the seal and of the file from byte 512 on; `file` stands there.
+std::array<std::uint8_t, 32> digest_of(Seal seal, std::FILE* file) {
+  seal.digest = {};
+  Sha256 hash;
+  hash.update(&seal, sizeof seal);
+  std::vector<std::uint8_t> buffer(1 << 18);
+  std::size_t n = 0;
+  while ((n = std::fread(buffer.data(), 1, buffer.size(), file)) > 0) hash.update(buffer.data(), n);
+  return hash.digest();
+}
+
+}  // namespace
+
+void write_seal(const std::filesystem::path& path, CheckpointTime at) {
+  Seal seal;
+  seal.bytes = std::filesystem::file_size(path);
+  seal.time = at.time;
+  seal.step = at.step;
+  const File file = open(path, "r+b");
+  std::fseek(file.get(), kSealBytes, SEEK_SET);
+  seal.digest = digest_of(seal, file.get());
+  std::fseek(file.get(), 0, SEEK_SET);
+  if (std::fwrite(&seal, sizeof seal, 1, file.get()) != 1 || std::fflush(file.get()) != 0)
+    throw_system_error("cannot write", path);
+}
+
+CheckpointTime check_seal(const std::filesystem::path& path) {
+  const auto damaged = [&](const std::string& what) {
+    return Error(fmt::format("checkpoint {} is damaged: {}", path.string(), what));
+  };
+  const File file = open(path, "rb");
+  Seal seal;
+  const Seal expected;
+  if (std::fread(&seal, sizeof seal, 1, file.get()) != 1) throw damaged("it is too short");
+  if (seal.magic != expected.magic) throw damaged("it is not a checkpoint of Ejecta");
+  if (seal.version != kCheckpointVersion)
+    throw Error(fmt::format("checkpoint {} has format {}, this program reads format {}", path.string(),
+                            seal.version, kCheckpointVersion));
+  std::error_code failed;
+  const std::uint64_t bytes = std::filesystem::file_size(path, failed);
+  if (failed) throw damaged(failed.message());
+  if (bytes != seal.bytes) throw damaged(fmt::format("it has {} bytes instead of {}", bytes, seal.bytes));
+  std::fseek(file.get(), kSealBytes, SEEK_SET);
+  if (digest_of(seal, file.get()) != seal.digest) throw damaged("its checksum does not fit");
+  return {seal.time, seal.step};
+}
+
+}  // namespace ejecta::output

@@ -1,0 +1,57 @@
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+#include <sys/utsname.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <fstream>
+#include <thread>
+
+#include "output/build_info.hpp"
+#include "output/run_directory.hpp"
+#include "output/sha256.hpp"
+
+namespace ejecta::output {
+namespace {
+
+std::string processor() {
+  std::ifstream info("/proc/cpuinfo");
+  for (std::string line; std::getline(info, line);)
+    if (line.starts_with("model name")) return line.substr(std::min(line.find(':') + 2, line.size()));
+  return "unknown";
+}
+
+std::int64_t memory_bytes() {
+  return std::int64_t(::sysconf(_SC_PHYS_PAGES)) * std::int64_t(::sysconf(_SC_PAGESIZE));
+}
+
+}  // namespace
+
+nlohmann::ordered_json make_manifest(const Provenance& p) {
+  utsname system{};
+  ::uname(&system);
+  return {{"program", "ejecta"},
+          {"version", version()},
+          {"git_revision", git_revision()},
+          {"compiler", compiler()},
+          {"compile_flags", compile_flags()},
+          {"precision", precision()},
+          {"command", p.command},
+          {"case", p.case_path},
+          {"input_sha256", sha256_hex(p.input)},
+          {"started", fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::chrono::system_clock::now()))},
+          {"threads", p.threads},
+          {"machine",
+           {{"host", system.nodename},
+            {"system", fmt::format("{} {}", system.sysname, system.release)},
+            {"processor", processor()},
+            {"logical_processors", std::thread::hardware_concurrency()},
+            {"memory_bytes", memory_bytes()}}}};
+}
+
+std::vector<std::string> provenance_lines(const Provenance& p) {
+  return {fmt::format("ejecta {} ({}, {})", version(), git_revision(), precision()),
+          fmt::format("case {}", p.case_path), fmt::format("input sha256 {}", sha256_hex(p.input))};
+}
+
+}  // namespace ejecta::output

@@ -1,0 +1,88 @@
+#include "output/run_directory.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <system_error>
+
+#include "base/error.hpp"
+#include "output/output_file.hpp"
+
+namespace fs = std::filesystem;
+
+namespace ejecta::output {
+namespace {
+
+constexpr std::array kContents{"case.toml",    "manifest.json", "result.json", "progress.json", "history",
+                               "replay.jsonl", "fields",        "checkpoints", "report.html"};
+
+[[noreturn]] void refuse(const fs::path& path, const std::error_code& why) {
+  throw InputError(fmt::format("cannot write the run directory {}: {} (choose another place with --out DIR)",
+                               path.string(), why.message()));
+}
+
+void check_finite(const nlohmann::ordered_json& value, const std::string& key) {
+  if (value.is_number_float() && !std::isfinite(value.get<double>()))
+    throw DivergedError(fmt::format("the result {} is {}", key, value.get<double>()));
+  if (!value.is_structured()) return;
+  for (const auto& [name, child] : value.items()) check_finite(child, key + '/' + name);
+}
+
+}  // namespace
+
+fs::path RunDirectory::default_path(const fs::path& case_path) { return case_path.stem().string() + ".run"; }
+
+RunDirectory RunDirectory::create(const fs::path& path, bool force) {
+  std::error_code failed;
+  if (fs::exists(path, failed)) {
+    if (!fs::is_directory(path))
+      throw InputError(fmt::format("{} is a file; a run needs a directory", path.string()));
+    const bool is_run = fs::exists(path / "manifest.json");
+    const bool is_empty = fs::is_empty(path, failed);
+    if (failed) refuse(path, failed);
+    if (is_run && !force)
+      throw InputError(
+          fmt::format("{} already holds a run: go on with --resume, overwrite it with --force, or choose "
+                      "another place with --out DIR",
+                      path.string()));
+    if (!is_run && !is_empty)
+      throw InputError(fmt::format(
+          "{} holds files that are not of a run; choose another place with --out DIR", path.string()));
+    for (const char* name : kContents) {
+      fs::remove_all(path / name, failed);
+      if (failed) refuse(path, failed);
+    }
+  }
+  for (const char* name : {"history", "fields", "checkpoints"}) {
+    fs::create_directories(path / name, failed);
+    if (failed) refuse(path, failed);
+  }
+  return RunDirectory(path);
+}
+
+RunDirectory RunDirectory::open(const fs::path& path) {
+  std::error_code failed;
+  if (!fs::is_directory(path, failed))
+    throw InputError(fmt::format("there is no directory {}", path.string()));
+  if (!fs::exists(path / "manifest.json", failed))
+    throw InputError(fmt::format("{} is not the directory of a run: it has no manifest.json", path.string()));
+  return RunDirectory(path);
+}
+
+fs::path RunDirectory::history(std::string_view name) const {
+  return path_ / "history" / fmt::format("{}.csv", name);
+}
+
+void RunDirectory::write_case(std::string_view toml) const { write_file(path_ / "case.toml", toml); }
+
+void RunDirectory::write_manifest(const nlohmann::ordered_json& manifest) const {
+  write_file(path_ / "manifest.json", manifest.dump(2) + '\n');
+}
+
+void RunDirectory::write_result(const nlohmann::ordered_json& result) const {
+  check_finite(result, "");
+  write_file(path_ / "result.json", result.dump(2) + '\n');
+}
+
+}  // namespace ejecta::output

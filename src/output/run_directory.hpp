@@ -1,0 +1,51 @@
+#pragma once
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <string_view>
+
+namespace ejecta::output {
+
+/// Where and by what a run was made.
+struct Provenance {
+  std::string command;  ///< the command line
+  std::string case_path;
+  std::string input;  ///< resolved case: its SHA-256 is the input hash
+  int threads = 1;
+};
+
+/// manifest.json: version, git revision, compiler, flags, precision, machine, threads, input hash, start.
+nlohmann::ordered_json make_manifest(const Provenance& p);
+/// The lines that start a history file.
+std::vector<std::string> provenance_lines(const Provenance& p);
+
+/// The directory of one run. Its files are described in docs/files.md.
+class RunDirectory {
+ public:
+  /// CASE.run beside the working directory, for "cases/x.toml": "x.run".
+  static std::filesystem::path default_path(const std::filesystem::path& case_path);
+  /// Makes an empty run directory. Throws InputError when `path` holds a run already and `force` is not set,
+  /// when it holds anything that is not a run, or when it cannot be made or written. With `force` only files
+  /// of a run are removed.
+  static RunDirectory create(const std::filesystem::path& path, bool force);
+  /// An existing one; throws InputError when `path` is not the directory of a run.
+  static RunDirectory open(const std::filesystem::path& path);
+
+  const std::filesystem::path& path() const { return path_; }
+  std::filesystem::path history(std::string_view name) const;  ///< history/NAME.csv
+  std::filesystem::path fields() const { return path_ / "fields"; }
+  std::filesystem::path checkpoints() const { return path_ / "checkpoints"; }
+  std::filesystem::path replay() const { return path_ / "replay.jsonl"; }
+  std::filesystem::path progress() const { return path_ / "progress.json"; }
+
+  void write_case(std::string_view toml) const;
+  void write_manifest(const nlohmann::ordered_json& manifest) const;
+  /// Throws DivergedError, with the key, when a number is not finite.
+  void write_result(const nlohmann::ordered_json& result) const;
+
+ private:
+  explicit RunDirectory(std::filesystem::path path) : path_(std::move(path)) {}
+  std::filesystem::path path_;
+};
+
+}  // namespace ejecta::output

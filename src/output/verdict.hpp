@@ -1,0 +1,11 @@
+#pragma once
+#include <nlohmann/json.hpp>
+#include <string>
+
+namespace ejecta::output {
+
+/// The result in one sentence (docs/files.md: result.json), for the terminal and the head of the report: the
+/// outcome of each body with its margins, or what was computed when there is no verdict.
+std::string verdict_sentence(const nlohmann::ordered_json& result);
+
+}  // namespace ejecta::output
