@@ -1,0 +1,78 @@
+#pragma once
+#include <array>
+#include <functional>
+#include <vector>
+
+#include "base/real.hpp"
+#include "base/vec.hpp"
+#include "grid/grid.hpp"
+
+namespace ejecta {
+
+/// How a face of the box acts on the incompressible flow. Every boundary of the case file is one of these
+/// with a state: `inflow` also serves moving walls and jets, `open` outlets, free streams and total pressure.
+enum class BoundaryKind { inflow, wall, mirror, open, periodic };
+
+/// What comes in through a boundary: velocity (m/s), turbulent kinetic energy (m2/s2) and the second
+/// turbulence variable (epsilon, m2/s3, or omega, 1/s).
+struct BoundaryState {
+  std::array<Real, 3> velocity{0, 0, 0};
+  Real k = 0, second = 0;
+};
+
+struct Boundary {
+  BoundaryKind kind = BoundaryKind::wall;
+  std::function<BoundaryState(const Vec3& position, double time)> state;  ///< empty: at rest
+  bool varies = false;                                                    ///< state depends on time
+  double pressure = 0.0;        ///< open: p / rho on the face where fluid leaves, m2/s2 gauge
+  bool total_pressure = false;  ///< open: `pressure` is the stagnation value where fluid enters
+};
+
+/// The six boundaries with their states on every face cell, refreshed once a stage.
+class Boundaries {
+ public:
+  Boundaries(const Grid& grid, std::array<Boundary, 6> faces);
+
+  const Boundary& operator[](int face) const { return faces_[static_cast<std::size_t>(face)]; }
+  BoundaryKind kind(int face) const { return faces_[static_cast<std::size_t>(face)].kind; }
+  bool open() const;  ///< at least one boundary fixes the pressure
+
+  /// Evaluates the states at `time`; those that do not vary only once.
+  void update(double time);
+
+  /// State on face cell (a, b) of a face normal to d; a, b index the other two directions in cyclic order
+  /// x -> (y, z), y -> (z, x), z -> (x, y).
+  const BoundaryState& at(int face, int a, int b) const {
+    const Plane& p = planes_[static_cast<std::size_t>(face)];
+    return p
+        .states[static_cast<std::size_t>(b) * static_cast<std::size_t>(p.na) + static_cast<std::size_t>(a)];
+  }
+
+  void fill_velocity(std::array<FieldView, 3> u, const std::array<FieldView, 3>& q) const;
+  /// Ghosts of p / rho: `total` is the pressure itself, otherwise an increment (zero where pressure is
+  /// fixed).
+  void fill_pressure(FieldView p, const std::array<FieldView, 3>& q, bool total) const;
+  /// Ghosts of k and the second turbulence variable.
+  void fill_turbulence(FieldView k, FieldView second, const std::array<FieldView, 3>& q) const;
+  /// Ghosts by zero gradient (periodic where periodic).
+  void fill_zero_gradient(FieldView f) const;
+  /// Sets q on the boundary faces: states, zero on mirrors, extrapolated u_star with the pressure force of
+  /// the half cell on open ones.
+  void fill_face_velocity(std::array<FieldView, 3> q, const std::array<FieldView, 3>& u_star,
+                          ConstFieldView p, Real dt) const;
+
+ private:
+  struct Plane {
+    int na = 0, nb = 0;
+    std::vector<BoundaryState> states;
+    bool fresh = false;
+  };
+  template <class Ghost>
+  void fill(FieldView f, const Ghost& ghost) const;
+
+  const Grid& grid_;
+  std::array<Boundary, 6> faces_;
+  std::array<Plane, 6> planes_;
+};
+
+}  // namespace ejecta

@@ -1,0 +1,117 @@
+#include "flow/piso/momentum.hpp"
+
+#include "flow/stencil.hpp"
+#include "flow/sweep.hpp"
+
+namespace ejecta {
+namespace {
+
+template <bool kTurbulent>
+struct MomentumFlux {
+  std::array<ConstFieldView, 3> u, q;
+  ConstFieldView nut;
+  Metrics m[3];
+  Real nu;
+
+  template <int D>
+  void flux(int j, int k, int i0, int i1, Real* const (&out)[3]) const {
+    constexpr int A = (D + 1) % 3, B = (D + 2) % 3;  // the two directions across the face
+    const std::ptrdiff_t s = stride(u[0], D), sa = stride(u[0], A), sb = stride(u[0], B);
+    const Real* velocity = q[D].row(j, k);
+    const Real* normal = u[D].row(j, k);
+    const Real* across_a = u[A].row(j, k);
+    const Real* across_b = u[B].row(j, k);
+    const Real* eddy = kTurbulent ? nut.row(j, k) : nullptr;
+    Real *out_d = out[D], *out_a = out[A], *out_b = out[B];
+    for_each_lane(i0, i1, [=, this](int i) {
+      const int at[3] = {i, j, k};
+      const FaceMetrics f = face_metrics(m[D], at[D]);
+      const Real area = face_area<D>(m, i, j, k);
+      const Real v = velocity[i];
+      const auto convected = [&](const Real* p) {
+        return v * upwind_value(v, p[i - 2 * s], p[i - s], p[i], p[i + s], f);
+      };
+      const auto gradient = [&](const Real* p) { return (p[i] - p[i - s]) * f.inv_here; };
+      if constexpr (kTurbulent) {
+        const Real viscosity = nu + f.weight * eddy[i - s] + (Real(1) - f.weight) * eddy[i];
+        const auto cross = [&](std::ptrdiff_t step, Real inv_span_low, Real inv_span_high) {
+          return f.weight * derivative(normal + i - s, step, inv_span_low) +
+                 (Real(1) - f.weight) * derivative(normal + i, step, inv_span_high);
+        };
+        const Real span_a = m[A].inv_span[at[A]], span_b = m[B].inv_span[at[B]];
+        out_d[i] = area * (convected(normal) - Real(2) * viscosity * gradient(normal));
+        out_a[i] =
+            area * (convected(across_a) - viscosity * (gradient(across_a) + cross(sa, span_a, span_a)));
+        out_b[i] =
+            area * (convected(across_b) - viscosity * (gradient(across_b) + cross(sb, span_b, span_b)));
+      } else {
+        out_d[i] = area * (convected(normal) - nu * gradient(normal));
+        out_a[i] = area * (convected(across_a) - nu * gradient(across_a));
+        out_b[i] = area * (convected(across_b) - nu * gradient(across_b));
+      }
+    });
+  }
+};
+
+/// p on the upper minus p on the lower D-face of a cell, over its width.
+inline Real pressure_gradient(const Real* p, std::ptrdiff_t s, const Metrics& m, int at) {
+  const Real low = m.weight[at] * p[-s] + (Real(1) - m.weight[at]) * p[0];
+  const Real high = m.weight[at + 1] * p[0] + (Real(1) - m.weight[at + 1]) * p[s];
+  return (high - low) / m.width[at];
+}
+
+template <bool kTurbulent>
+void predict(const Grid& grid, const MomentumTerms& t) {
+  const MomentumFlux<kTurbulent> face{t.u,
+                                      t.face_velocity,
+                                      t.eddy_viscosity,
+                                      {grid.metrics(0), grid.metrics(1), grid.metrics(2)},
+                                      t.viscosity};
+  const Metrics m[3] = {grid.metrics(0), grid.metrics(1), grid.metrics(2)};
+  const bool hoop = grid.axisymmetric();
+  sweep<3>(grid, face, [&](int j, int k, Real* const(&balance)[3]) {
+    for (int c = 0; c < 3; ++c) {
+      const Real *old = t.old[c].row(j, k), *now = t.u[c].row(j, k), *p = t.pressure.row(j, k);
+      const Real* source = t.source[c].origin ? t.source[c].row(j, k) : nullptr;
+      const Real* b = balance[c];
+      Real* out = t.out[c].row(j, k);
+      const Real dt = t.dt, wa = t.a, wb = t.b, acceleration = t.acceleration[c];
+      const Real inv_jk = m[1].inv_volume[j] * m[2].inv_volume[k];
+      const std::ptrdiff_t s = stride(t.pressure, c);
+      const bool active = grid.active(c);
+      const Metrics& mc = m[c];
+      const Real* inv_volume = m[0].inv_volume;
+      const auto finish = [=](auto with_source, auto with_pressure) {
+        for_each_lane(0, grid.nx(), [=](int i) {
+          const int at = c == 0 ? i : c == 1 ? j : k;
+          Real rate = acceleration - b[i] * inv_volume[i] * inv_jk;
+          if constexpr (with_pressure) rate -= pressure_gradient(p + i, s, mc, at);
+          if constexpr (with_source) rate += source[i];
+          out[i] = wa * old[i] + wb * (now[i] + dt * rate);
+        });
+      };
+      using Yes = std::true_type;
+      using No = std::false_type;
+      if (source) active ? finish(Yes{}, Yes{}) : finish(Yes{}, No{});
+      else active ? finish(No{}, Yes{}) : finish(No{}, No{});
+      if (hoop &&
+          c == 0) {  // - tau_theta_theta / r, tau = 2 nu u_r / r (nu u_r / r without the transposed gradient)
+        const Real* eddy = kTurbulent ? t.eddy_viscosity.row(j, k) : nullptr;
+        const Real* r = m[0].centre;
+        const Real nu = t.viscosity;
+        for_each_lane(0, grid.nx(), [=](int i) {
+          const Real viscosity = kTurbulent ? Real(2) * (nu + eddy[i]) : nu;
+          out[i] -= wb * dt * viscosity * now[i] / (r[i] * r[i]);
+        });
+      }
+    }
+  });
+}
+
+}  // namespace
+
+void predict_momentum(const Grid& grid, const MomentumTerms& terms) {
+  terms.eddy_viscosity.origin ? predict<true>(grid, terms) : predict<false>(grid, terms);
+}
+
+}  // namespace ejecta

@@ -1,0 +1,25 @@
+#pragma once
+#include <array>
+
+#include "grid/grid.hpp"
+
+/// The collocated projection: u_star -> face velocities -> pressure increment -> divergence-free faces and
+/// corrected cells. p is pressure over density throughout, m2/s2.
+namespace ejecta {
+
+/// q = interpolated u_star + dt (interpolated cell gradient of p - face gradient of p), Rhie & Chow 1983, on
+/// all inner (and periodic) faces.
+void face_velocities(const Grid& grid, const std::array<ConstFieldView, 3>& u_star, ConstFieldView p, Real dt,
+                     const std::array<FieldView, 3>& q);
+
+/// rhs = net volume flow out of each cell / dt.
+void divergence(const Grid& grid, const std::array<ConstFieldView, 3>& q, Real dt, FieldView rhs);
+
+/// q -= dt grad phi on faces, u = u_star - dt grad phi in cells, p += phi. phi has filled ghosts.
+void apply_correction(const Grid& grid, ConstFieldView phi, Real dt, const std::array<FieldView, 3>& q,
+                      const std::array<FieldView, 3>& u, FieldView p);
+
+/// Largest |net volume flow out of a cell| / (volume * velocity / width): relative divergence of q.
+double largest_divergence(const Grid& grid, const std::array<ConstFieldView, 3>& q);
+
+}  // namespace ejecta

@@ -1,0 +1,99 @@
+#pragma once
+#include <algorithm>
+#include <cmath>
+
+#include "base/real.hpp"
+
+/// Two-equation closures as pure functions of one point. k in m2/s2, epsilon in m2/s3, omega in 1/s.
+namespace ejecta {
+
+/// Velocity gradient g[i][j] = d u_i / d x_j, 1/s.
+struct VelocityGradient {
+  Real g[3][3];
+};
+
+/// 2 S_ij S_ij, 1/s2, S the symmetric part of the gradient.
+inline Real strain_squared(const VelocityGradient& v) {
+  Real sum = 0;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) {
+      const Real s = v.g[i][j] + v.g[j][i];
+      sum += Real(0.5) * s * s;
+    }
+  return sum;
+}
+
+/// Pope's invariant of vortex stretching w_ij w_jk s_ki, without its factor (k / epsilon)^3: with S and W the
+/// symmetric and antisymmetric parts of the gradient, W_ij W_jk S_ki, 1/s3 (Pope 1978, AIAA J. 16:279). Zero
+/// in plane flow.
+inline Real vortex_stretching(const VelocityGradient& v) {
+  // With vorticity w, W_ij W_jk = (w_i w_k - w^2 delta_ik) / 4, and S is free of trace.
+  const Real w[3] = {v.g[2][1] - v.g[1][2], v.g[0][2] - v.g[2][0], v.g[1][0] - v.g[0][1]};
+  Real sum = 0;
+  for (int i = 0; i < 3; ++i)
+    for (int k = 0; k < 3; ++k) sum += w[i] * w[k] * Real(0.5) * (v.g[i][k] + v.g[k][i]);
+  return Real(0.25) * sum;
+}
+
+/// Standard k-epsilon (Launder & Spalding 1974), with Pope's round-jet term.
+namespace k_epsilon {
+inline constexpr Real kCmu = Real(0.09), kC1 = Real(1.44), kC2 = Real(1.92), kC3 = Real(0.79);
+inline constexpr Real kSigmaK = Real(1.0), kSigmaEpsilon = Real(1.3);
+
+inline Real eddy_viscosity(Real k, Real epsilon) { return kCmu * k * k / epsilon; }
+
+/// chi = (k / epsilon)^3 W_ij W_jk S_ki; Pope's term in the epsilon equation is C3 chi epsilon^2 / k.
+inline Real pope_chi(Real k, Real epsilon, Real stretching) {
+  const Real tau = k / epsilon;
+  return tau * tau * tau * stretching;
+}
+}  // namespace k_epsilon
+
+/// k-omega SST (Menter 1994, NASA Turbulence Modeling Resource).
+namespace k_omega_sst {
+inline constexpr Real kSigmaK1 = Real(0.85), kSigmaW1 = Real(0.5), kBeta1 = Real(0.075);
+inline constexpr Real kSigmaK2 = Real(1.0), kSigmaW2 = Real(0.856), kBeta2 = Real(0.0828);
+inline constexpr Real kBetaStar = Real(0.09), kKappa = Real(0.41), kA1 = Real(0.31);
+
+inline Real blend(Real f1, Real one, Real two) { return f1 * one + (Real(1) - f1) * two; }
+
+/// gamma = beta / beta* - sigma_w kappa^2 / sqrt(beta*), of the inner and the outer set.
+inline Real gamma(Real f1) {
+  constexpr Real root = Real(0.3);
+  constexpr Real one = kBeta1 / kBetaStar - kSigmaW1 * kKappa * kKappa / root;
+  constexpr Real two = kBeta2 / kBetaStar - kSigmaW2 * kKappa * kKappa / root;
+  return blend(f1, one, two);
+}
+
+/// Cross-diffusion 2 sigma_w2 / omega grad k . grad omega, 1/s2.
+inline Real cross_diffusion(Real omega, Real gradients) { return Real(2) * kSigmaW2 * gradients / omega; }
+
+/// Blending function F1; d is the distance to the nearest wall, m.
+inline Real f1(Real k, Real omega, Real nu, Real d, Real cross) {
+  const Real positive = std::max(cross, Real(1e-20));
+  const Real inner = std::max(std::sqrt(k) / (kBetaStar * omega * d), Real(500) * nu / (d * d * omega));
+  const Real arg = std::min(inner, Real(4) * kSigmaW2 * k / (positive * d * d));
+  const Real arg2 = std::min(arg * arg, Real(10));
+  return std::tanh(arg2 * arg2);
+}
+
+inline Real f2(Real k, Real omega, Real nu, Real d) {
+  const Real arg =
+      std::max(Real(2) * std::sqrt(k) / (kBetaStar * omega * d), Real(500) * nu / (d * d * omega));
+  return std::tanh(std::min(arg * arg, Real(50)));
+}
+
+/// nu_t = a1 k / max(a1 omega, strain F2), strain = sqrt(2 S_ij S_ij).
+inline Real eddy_viscosity(Real k, Real omega, Real strain, Real f2) {
+  return kA1 * k / std::max(kA1 * omega, strain * f2);
+}
+}  // namespace k_omega_sst
+
+/// Law of the wall: eddy viscosity on a smooth wall whose first centre lies y+ away, over nu (Spalding's two
+/// layers joined at y+ = 11.53).
+inline Real wall_eddy_viscosity(Real y_plus) {
+  constexpr Real kappa = Real(0.41), e = Real(9.8);
+  return y_plus > Real(11.53) ? y_plus * kappa / std::log(e * y_plus) - Real(1) : Real(0);
+}
+
+}  // namespace ejecta

@@ -1,0 +1,47 @@
+#pragma once
+#include <array>
+
+#include "flow/boundary.hpp"
+#include "flow/solid_mask.hpp"
+#include "grid/grid.hpp"
+
+namespace ejecta {
+
+enum class TwoEquationModel { k_epsilon, k_omega_sst };
+
+/// Transport of k and epsilon (or omega) with an incompressible flow, once a step: limited upwind convection
+/// in time-centred (Lax-Wendroff) form, explicit diffusion, implicit sinks, so that both stay positive.
+class TwoEquation {
+ public:
+  TwoEquation(const Grid& grid, TwoEquationModel model, bool round_jet_correction, double viscosity);
+
+  void initialise(double k, double second);
+  void set_at(int i, int j, int k_index, double k, double second);
+  /// Sets nu_t from k and the second variable; u has filled ghosts.
+  void update_eddy_viscosity(const Boundaries& b, const std::array<ConstFieldView, 3>& u,
+                             const std::array<FieldView, 3>& q, const SolidMask& solids);
+  void advance(const Boundaries& b, const std::array<ConstFieldView, 3>& u, const std::array<FieldView, 3>& q,
+               const SolidMask& solids, Real dt);
+
+  ConstFieldView eddy_viscosity() const { return nut_.view(); }
+  const Field& k() const { return k_; }
+  const Field& second() const { return second_; }
+  /// Everything a resume needs.
+  std::array<Field*, 4> state() { return {&k_, &second_, &nut_, &f1_}; }
+
+ private:
+  void apply_walls();
+  Real wall_distance(int i, int j, int k) const;
+
+  const Grid& grid_;
+  TwoEquationModel model_;
+  bool round_jet_;
+  Real nu_;
+  Field k_, second_, nut_, f1_, k_new_, second_new_;
+  std::array<bool, 6> is_wall_{};
+};
+
+/// Floors that keep still air still: far below any turbulence that matters.
+inline constexpr Real kMinimalK = Real(1e-8), kMinimalSecond = Real(1e-8);
+
+}  // namespace ejecta
