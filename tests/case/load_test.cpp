@@ -63,7 +63,7 @@ on_belt = true
 [[body]]
 shape = "multisphere"
 spheres = [["0 mm", "0 mm", "0 mm", "5 mm"], ["4 mm", "0 mm", "0 mm", "3 mm"]]
-position = ["30 mm", "0 mm", "100 mm"]
+position = ["8 mm", "0 mm", "100 mm"]
 rotation_angle = "90 deg"
 
 [launch]

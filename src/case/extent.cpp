@@ -1,0 +1,94 @@
+#include "case/extent.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace ejecta {
+
+std::optional<Box> grid_box(const Case& c) {
+  Box box;
+  for (int a = 0; a < 3; ++a) {
+    const AxisSpec& axis = c.grid.axis[static_cast<std::size_t>(a)];
+    if (axis.points.size() < 2) return std::nullopt;
+    box.low[a] = axis.points.front();
+    box.high[a] = axis.points.back();
+  }
+  return box;
+}
+
+double cell_width(double length, int cells, double grading, int index) {
+  if (cells <= 1) return length;
+  const double ratio = std::pow(grading, 1.0 / (cells - 1));
+  if (std::abs(ratio - 1.0) < 1e-12) return length / cells;
+  return length * (ratio - 1.0) / (std::pow(ratio, cells) - 1.0) * std::pow(ratio, index);
+}
+
+double widest_cell(const AxisSpec& axis, double from, double to) {
+  from = std::clamp(from, axis.points.front(), axis.points.back());
+  to = std::clamp(to, axis.points.front(), axis.points.back());
+  double widest = 0.0;
+  for (std::size_t b = 0; b < axis.cells.size(); ++b) {
+    const double length = axis.points[b + 1] - axis.points[b];
+    double low = axis.points[b];
+    for (int i = 0; i < axis.cells[b]; ++i) {
+      const double width = cell_width(length, axis.cells[b], axis.grading.empty() ? 1.0 : axis.grading[b], i);
+      if (low <= to && low + width >= from) widest = std::max(widest, width);
+      low += width;
+    }
+  }
+  return widest;
+}
+
+Vec3 half_extent(const BodySpec& b) {
+  switch (b.shape) {
+    case ShapeKind::sphere:
+      return Vec3::Constant(0.5 * b.diameter);
+    case ShapeKind::box:
+    case ShapeKind::cluster:
+    case ShapeKind::superquadric:
+      return 0.5 * b.size;
+    case ShapeKind::multisphere: {
+      if (b.spheres.empty()) return Vec3::Zero();
+      Vec3 low = Vec3::Constant(1e300), high = -low;
+      for (const auto& s : b.spheres) {
+        const Vec3 centre(s[0], s[1], s[2]);
+        low = low.cwiseMin(centre - Vec3::Constant(s[3]));
+        high = high.cwiseMax(centre + Vec3::Constant(s[3]));
+      }
+      return 0.5 * (high - low);
+    }
+    case ShapeKind::polyhedron: {
+      if (b.vertices.empty()) return Vec3::Zero();
+      Vec3 low = b.vertices.front(), high = low;
+      for (const Vec3& v : b.vertices) {
+        low = low.cwiseMin(v);
+        high = high.cwiseMax(v);
+      }
+      return 0.5 * (high - low);
+    }
+    case ShapeKind::mesh:
+      return Vec3::Zero();
+  }
+  return Vec3::Zero();
+}
+
+double smallest_feature(const BodySpec& b) {
+  switch (b.shape) {
+    case ShapeKind::cluster:
+      return b.sphere_diameter;
+    case ShapeKind::multisphere: {
+      double smallest = b.spheres.empty() ? 0.0 : 2.0 * b.spheres.front()[3];
+      for (const auto& s : b.spheres) smallest = std::min(smallest, 2.0 * s[3]);
+      return smallest;
+    }
+    default:
+      return 2.0 * half_extent(b).minCoeff();
+  }
+}
+
+Vec3 place_of_interest(const Case& c, const BodySpec& b) {
+  if (!b.on_belt) return b.position;
+  return c.jet.nozzle + Vec3(c.launch.offset_along, c.launch.offset_across, c.launch.stand_off);
+}
+
+}  // namespace ejecta

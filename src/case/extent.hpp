@@ -1,0 +1,33 @@
+#pragma once
+#include <array>
+#include <optional>
+
+#include "base/vec.hpp"
+#include "case/case.hpp"
+
+/// Sizes of boxes and bodies as far as the case alone tells them; the true geometry is the business of grid
+/// and shape.
+namespace ejecta {
+
+struct Box {
+  Vec3 low{0, 0, 0}, high{0, 0, 0};  ///< m
+  bool contains(const Vec3& p) const {
+    return (p.array() >= low.array()).all() && (p.array() <= high.array()).all();
+  }
+};
+
+/// The computed box; nothing when the case has no grid.
+std::optional<Box> grid_box(const Case&);
+/// Widths of the cells of one block: a geometric series with last/first = grading.
+double cell_width(double length, int cells, double grading, int index);
+/// Largest width of the cells of an axis that touch [from, to], or the nearest cell's; m.
+double widest_cell(const AxisSpec& axis, double from, double to);
+
+/// Half edge lengths of the box around a body in its own axes, m; zero for a mesh, which only the file knows.
+Vec3 half_extent(const BodySpec&);
+/// What a grid must resolve: smallest sphere or edge, m; zero when unknown.
+double smallest_feature(const BodySpec&);
+/// Where the body is when it matters: at the start, or on the jet's axis if it comes from the belt, m.
+Vec3 place_of_interest(const Case&, const BodySpec&);
+
+}  // namespace ejecta

@@ -1,0 +1,41 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "case/case.hpp"
+#include "case/problem.hpp"
+
+namespace ejecta {
+
+/// Collects what the checks of sense.cpp find.
+struct Findings {
+  std::vector<Problem> list;
+
+  void error(const std::string& key, const std::string& what, const std::string& expected = "",
+             const std::string& example = "") {
+    list.push_back({.key = key, .what = what, .expected = expected, .example = example});
+  }
+  void warning(const std::string& key, const std::string& what, const std::string& expected = "",
+               const std::string& example = "") {
+    list.push_back(
+        {.key = key, .what = what, .expected = expected, .example = example, .severity = Severity::warning});
+  }
+};
+
+// Each looks at one part of the case.
+void sense_run(const Case&, Findings&);
+void sense_grid(const Case&, Findings&);
+void sense_boundaries(const Case&, Findings&);
+void sense_materials(const Case&, Findings&);
+void sense_shapes(const Case&, Findings&);
+void sense_places(const Case&, Findings&);
+void sense_overlaps(const Case&, Findings&);
+void sense_walls(const Case&, Findings&);
+void sense_sorter(const Case&, Findings&);
+void sense_records(const Case&, Findings&);
+void sense_expectations(const Case&, Findings&);
+
+/// A name relative to the case file's folder, unless absolute.
+std::string beside_case(const Case&, const std::string& file);
+
+}  // namespace ejecta

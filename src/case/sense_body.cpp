@@ -1,0 +1,165 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "base/units.hpp"
+#include "case/extent.hpp"
+#include "case/findings.hpp"
+#include "case/words.hpp"
+
+/// Materials, shapes, walls.
+namespace ejecta {
+namespace {
+
+/// Reports names that occur twice in a list of structs with a `name`.
+template <class List>
+void refuse_twins(const List& list, const std::string& section, Findings& found) {
+  for (std::size_t i = 0; i < list.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j)
+      if (list[i].name == list[j].name) {
+        found.error(fmt::format("{}.{}.name", section, i),
+                    fmt::format("the name \"{}\" is taken already", list[i].name),
+                    "a name of its own for each", fmt::format("name = \"{}-2\"", list[i].name));
+        break;
+      }
+}
+
+void require_material(const Case& c, const std::string& key, const std::string& name, Findings& found) {
+  if (name.empty()) return;
+  std::vector<std::string> known;
+  for (const MaterialSpec& m : c.materials) known.push_back(m.name);
+  if (std::find(known.begin(), known.end(), name) != known.end()) return;
+  found.error(
+      key, fmt::format("there is no material \"{}\"", name),
+      known.empty() ? "a [[material]] of that name" : fmt::format("one of {}", fmt::join(known, ", ")),
+      fmt::format("[[material]] name = \"{}\"", name));
+  found.list.back().nearest = nearest(name, known);
+}
+
+void require_file(const Case& c, const std::string& key, const std::string& file, const std::string& kind,
+                  Findings& found) {
+  std::error_code ignored;
+  if (file.empty())
+    found.error(key, fmt::format("a {} needs its file", kind), "a file beside the case file",
+                "file = \"lump.stl\"");
+  else if (!std::filesystem::is_regular_file(beside_case(c, file), ignored))
+    found.error(key, fmt::format("there is no file \"{}\"", beside_case(c, file)),
+                "a file, relative to the folder of the case");
+}
+
+/// Spheres in a row that touch or overlap fill the length; gaps would make the cluster fall apart.
+bool falls_apart(const BodySpec& b) {
+  for (int a = 0; a < 3; ++a) {
+    const int n = b.cluster[static_cast<std::size_t>(a)];
+    if (n > 1 && (b.size[a] - b.sphere_diameter) / (n - 1) > b.sphere_diameter * (1 + 1e-9)) return true;
+  }
+  return false;
+}
+
+void check_shape(const Case& c, const BodySpec& b, const std::string& key, Findings& found) {
+  switch (b.shape) {
+    case ShapeKind::sphere:
+      if (b.diameter <= 0.0)
+        found.error(key + ".diameter", "a sphere needs its diameter", "a length, more than 0",
+                    "diameter = \"10 mm\"");
+      break;
+    case ShapeKind::box:
+    case ShapeKind::superquadric:
+      if (b.size.minCoeff() <= 0.0)
+        found.error(key + ".size", "this shape needs three edge lengths",
+                    "a list of 3 lengths, each more than 0", R"(size = ["20 mm", "20 mm", "10 mm"])");
+      break;
+    case ShapeKind::cluster:
+      if (b.size.minCoeff() <= 0.0 || b.sphere_diameter <= 0.0)
+        found.error(key + (b.size.minCoeff() <= 0.0 ? ".size" : ".sphere_diameter"),
+                    "a cluster needs size and sphere_diameter", "lengths, each more than 0",
+                    R"(size = ["10 mm", "10 mm", "10 mm"], sphere_diameter = "5 mm")");
+      else if (b.sphere_diameter > b.size.minCoeff() * (1 + 1e-9))
+        found.error(key + ".sphere_diameter", "the spheres are larger than the box they stand for",
+                    "at most the shortest edge", "sphere_diameter = \"5 mm\"");
+      else if (falls_apart(b))
+        found.error(key + ".cluster", "the spheres do not touch each other", "more or larger spheres",
+                    "cluster = [3, 3, 3]");
+      break;
+    case ShapeKind::multisphere:
+      if (b.spheres.empty())
+        found.error(key + ".spheres", "a multisphere needs its spheres", "a list of [x, y, z, radius]",
+                    R"(spheres = [["0 mm", "0 mm", "0 mm", "5 mm"]])");
+      if (std::any_of(b.spheres.begin(), b.spheres.end(), [](const auto& s) { return s[3] <= 0.0; }))
+        found.error(key + ".spheres", "a sphere without radius", "[x, y, z, radius], the radius more than 0",
+                    R"(spheres = [["0 mm", "0 mm", "0 mm", "5 mm"]])");
+      break;
+    case ShapeKind::polyhedron:
+      if (b.vertices.size() < 4 || half_extent(b).minCoeff() <= 0.0)
+        found.error(key + ".vertices", "these points span no volume", "at least 4 points, not in one plane");
+      break;
+    case ShapeKind::mesh:
+      require_file(c, key + ".file", b.file, "mesh", found);
+      break;
+  }
+}
+
+}  // namespace
+
+std::string beside_case(const Case& c, const std::string& file) {
+  return (std::filesystem::path(c.path).parent_path() / file).string();
+}
+
+void sense_materials(const Case& c, Findings& found) {
+  refuse_twins(c.materials, "material", found);
+  for (std::size_t n = 0; n < c.material_pairs.size(); ++n) {
+    require_material(c, fmt::format("material_pair.{}.a", n), c.material_pairs[n].a, found);
+    require_material(c, fmt::format("material_pair.{}.b", n), c.material_pairs[n].b, found);
+  }
+  if (c.contact.law == ContactLaw::linear && c.contact.linear_stiffness <= 0.0)
+    found.error("contact.linear_stiffness", "the linear law needs its stiffness", "a stiffness, more than 0",
+                "linear_stiffness = \"10000 N/m\"");
+}
+
+void sense_shapes(const Case& c, Findings& found) {
+  refuse_twins(c.bodies, "body", found);
+  for (std::size_t n = 0; n < c.bodies.size(); ++n) {
+    const BodySpec& b = c.bodies[n];
+    const std::string key = fmt::format("body.{}", n);
+    check_shape(c, b, key, found);
+    require_material(c, key + ".material", b.material, found);
+    if (b.rotation_axis.norm() == 0.0)
+      found.error(key + ".rotation_axis", "an axis without direction", "a list of 3 numbers, not all 0",
+                  "rotation_axis = [0, 0, 1]");
+    if (b.on_belt && !c.launch.enabled)
+      found.error(key + ".on_belt", "on the belt, but there is no [launch]", "a section [launch]",
+                  "[launch]");
+    if (b.on_belt && b.motion != Motion::free)
+      found.error(key + ".motion", fmt::format("a body from the belt cannot be \"{}\"", word(b.motion)),
+                  "\"free\"", "motion = \"free\"");
+    if (b.true_box_mass && b.shape != ShapeKind::cluster)
+      found.error(key + ".true_box_mass", "only a cluster stands for a box", "false, or shape = \"cluster\"",
+                  "shape = \"cluster\"");
+    if (b.release_at > c.run.end_time)
+      found.warning(key + ".release_at", "the body is never released: the run ends before",
+                    "a time before run.end_time");
+  }
+}
+
+void sense_walls(const Case& c, Findings& found) {
+  refuse_twins(c.walls, "wall", found);
+  for (std::size_t n = 0; n < c.walls.size(); ++n) {
+    const WallSpec& w = c.walls[n];
+    const std::string key = fmt::format("wall.{}", n);
+    require_material(c, key + ".material", w.material, found);
+    if (w.normal.norm() == 0.0)
+      found.error(key + ".normal", "a wall without direction", "a list of 3 numbers, not all 0",
+                  "normal = [0, 0, 1]");
+    if (w.kind == WallKind::mesh) require_file(c, key + ".file", w.file, "mesh", found);
+    const int flat = w.kind == WallKind::box                                 ? 3
+                     : w.kind == WallKind::plate || w.kind == WallKind::belt ? 2
+                                                                             : 0;
+    if ((flat == 3 && w.size.minCoeff() <= 0.0) || (flat == 2 && w.size.head<2>().minCoeff() <= 0.0))
+      found.error(key + ".size", fmt::format("a wall of kind \"{}\" needs its extents", word(w.kind)),
+                  "a list of 3 lengths", R"(size = ["100 mm", "100 mm", "2 mm"])");
+  }
+}
+
+}  // namespace ejecta

@@ -1,0 +1,41 @@
+#include <fmt/format.h>
+
+#include "case/findings.hpp"
+
+/// What `ejecta validate` needs.
+namespace ejecta {
+
+void sense_expectations(const Case& c, Findings& found) {
+  for (std::size_t n = 0; n < c.expects.size(); ++n) {
+    const ExpectSpec& e = c.expects[n];
+    const std::string key = fmt::format("expect.{}", n);
+    if (!e.quantity.starts_with('/'))
+      found.error(key + ".quantity", "not a JSON pointer", "a path that starts with /",
+                  "quantity = \"/bodies/0/drag_coefficient\"");
+    const bool number = e.tolerance || e.relative_tolerance || e.at_least || e.at_most;
+    if (!number && e.text.empty())
+      found.error(key, "nothing to compare with", "tolerance, relative_tolerance, at_least, at_most or text",
+                  "reference = 1.087, relative_tolerance = 0.03");
+    if (number && !e.text.empty())
+      found.error(key + ".text", "a text and a number at once", "one of the two");
+    if (e.relative_tolerance && e.reference == 0.0)
+      found.error(key + ".relative_tolerance", "a relative tolerance about the reference 0 allows nothing",
+                  "an absolute tolerance", "tolerance = 0.01");
+    if (e.at_least && e.at_most && *e.at_least > *e.at_most)
+      found.error(key + ".at_least", "the lower limit is above the upper one", "at_least below at_most");
+  }
+  const auto& factors = c.convergence.factors;
+  if (factors.size() == 1)
+    found.error("convergence.factors", "one grid shows no order", "at least two factors",
+                "factors = [1, 2, 4]");
+  for (std::size_t i = 1; i < factors.size(); ++i)
+    if (!(factors[i] > factors[i - 1])) {
+      found.error("convergence.factors", "factors must ascend", "coarse grids first", "factors = [1, 2, 4]");
+      break;
+    }
+  if (!c.exact.velocity && !c.exact.pressure && !c.exact.density) return;
+  if (c.flow.solver == FlowSolver::none)
+    found.error("exact", "an exact flow without a flow", "a flow solver");
+}
+
+}  // namespace ejecta

@@ -1,0 +1,107 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "case/findings.hpp"
+
+/// Bodies that are inside each other at the start.
+namespace ejecta {
+namespace {
+
+struct Ball {
+  Vec3 centre;
+  double radius;
+};
+
+struct Block {
+  Vec3 centre, half;
+  Mat3 axes;  ///< columns, in the world
+};
+
+/// A body as far as this check needs it.
+struct Solid {
+  std::vector<Ball> balls;
+  std::vector<Block> blocks;
+};
+
+Solid solid(const BodySpec& b) {
+  const Mat3 turn = Eigen::AngleAxisd(b.rotation_angle, b.rotation_axis.normalized()).toRotationMatrix();
+  Solid s;
+  if (b.shape == ShapeKind::sphere) s.balls.push_back({b.position, 0.5 * b.diameter});
+  if (b.shape == ShapeKind::box) s.blocks.push_back({b.position, 0.5 * b.size, turn});
+  if (b.shape == ShapeKind::cluster || b.shape == ShapeKind::superquadric)
+    s.balls.push_back({b.position, 0.5 * b.size.minCoeff()});  // the ball that is surely inside
+  return s;
+}
+
+double overlap(const Ball& a, const Ball& b) { return a.radius + b.radius - (a.centre - b.centre).norm(); }
+
+double overlap(const Ball& ball, const Block& block) {
+  const Vec3 local = block.axes.transpose() * (ball.centre - block.centre);
+  const Vec3 closest = local.cwiseMax(-block.half).cwiseMin(block.half);
+  const double outside = (local - closest).norm();
+  if (outside > 0.0) return ball.radius - outside;
+  return ball.radius + (block.half - local.cwiseAbs()).minCoeff();
+}
+
+/// Separating axes of two oriented boxes (Gottschalk et al. 1996): the least overlap over the 15 candidates.
+double overlap(const Block& a, const Block& b) {
+  std::vector<Vec3> candidates;
+  for (int i = 0; i < 3; ++i) {
+    candidates.push_back(a.axes.col(i));
+    candidates.push_back(b.axes.col(i));
+    for (int j = 0; j < 3; ++j) {
+      const Vec3 cross = a.axes.col(i).cross(b.axes.col(j));
+      if (cross.norm() > 1e-6) candidates.push_back(cross.normalized());
+    }
+  }
+  double least = 1e300;
+  for (const Vec3& n : candidates) {
+    const double reach =
+        (a.axes.transpose() * n).cwiseAbs().dot(a.half) + (b.axes.transpose() * n).cwiseAbs().dot(b.half);
+    least = std::min(least, reach - std::abs(n.dot(a.centre - b.centre)));
+  }
+  return least;
+}
+
+double overlap(const Solid& a, const Solid& b) {
+  double deepest = -1e300;
+  for (const Ball& p : a.balls) {
+    for (const Ball& q : b.balls) deepest = std::max(deepest, overlap(p, q));
+    for (const Block& q : b.blocks) deepest = std::max(deepest, overlap(p, q));
+  }
+  for (const Block& p : a.blocks) {
+    for (const Ball& q : b.balls) deepest = std::max(deepest, overlap(q, p));
+    for (const Block& q : b.blocks) deepest = std::max(deepest, overlap(p, q));
+  }
+  return deepest;
+}
+
+double smallest_radius(const Solid& s) {
+  double smallest = 1e300;
+  for (const Ball& b : s.balls) smallest = std::min(smallest, b.radius);
+  for (const Block& b : s.blocks) smallest = std::min(smallest, b.half.minCoeff());
+  return smallest;
+}
+
+}  // namespace
+
+void sense_overlaps(const Case& c, Findings& found) {
+  constexpr double allowed = 0.05;  // of the smaller radius: bodies resting on each other do overlap a little
+  std::vector<Solid> solids;
+  for (const BodySpec& b : c.bodies) solids.push_back(solid(b));
+  for (std::size_t i = 0; i < solids.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j) {
+      if (c.bodies[i].on_belt != c.bodies[j].on_belt) continue;
+      const double depth = overlap(solids[i], solids[j]);
+      if (depth > allowed * std::min(smallest_radius(solids[i]), smallest_radius(solids[j])))
+        found.error(fmt::format("body.{}.position", i),
+                    fmt::format("\"{}\" overlaps \"{}\" by {:.3g} mm at the start", c.bodies[i].name,
+                                c.bodies[j].name, 1e3 * depth),
+                    "bodies apart from each other");
+    }
+}
+
+}  // namespace ejecta

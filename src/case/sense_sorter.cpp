@@ -1,0 +1,94 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "base/units.hpp"
+#include "case/extent.hpp"
+#include "case/findings.hpp"
+
+/// Valve, jet, launch, splitter.
+namespace ejecta {
+namespace {
+
+bool has_jet(const Case& c) {
+  return c.flow.solver != FlowSolver::none && c.boundary[4].type == BoundaryType::jet;
+}
+
+std::string ms(double seconds) { return fmt::format("{:.3g} ms", 1e3 * seconds); }
+
+/// The time at which the undisturbed body is over the jet against the time at which the jet blows.
+void check_pulse(const Case& c, const BodySpec& b, Findings& found) {
+  if (c.launch.belt_speed <= 0.0) return;
+  const double jet_radius = 2.0 * c.jet.spreading * std::max(0.0, c.launch.stand_off);
+  const double reach = (half_extent(b).maxCoeff() + jet_radius) / c.launch.belt_speed;
+  const double centre = c.launch.arrives_at - c.launch.offset_along / c.launch.belt_speed;
+  const auto missed = [&](double opens) {
+    const double from = opens + c.valve.delay, to = from + c.valve.duration + c.valve.fall_time;
+    return to < centre - reach || from > centre + reach;
+  };
+  if (!missed(c.valve.opens_at) || std::any_of(c.valve.more_pulses.begin(), c.valve.more_pulses.end(),
+                                               [&](double t) { return !missed(t); }))
+    return;
+  const double from = c.valve.opens_at + c.valve.delay;
+  found.warning(
+      "valve.opens_at",
+      fmt::format(
+          "the pulse misses \"{}\" altogether: it is over the jet from {} to {}, the jet blows from {} to {}",
+          b.name, ms(centre - reach), ms(centre + reach), ms(from),
+          ms(from + c.valve.duration + c.valve.fall_time)),
+      "a pulse while the body is over the jet",
+      fmt::format("opens_at = \"{}\"", ms(std::max(0.0, centre - 0.5 * c.valve.duration - c.valve.delay))));
+}
+
+}  // namespace
+
+void sense_sorter(const Case& c, Findings& found) {
+  const ValveSpec& v = c.valve;
+  std::error_code ignored;
+  if (v.shape == ValveShape::trace && v.trace.empty())
+    found.error("valve.trace", "the shape \"trace\" needs its file", "a CSV file beside the case file",
+                "trace = \"opening.csv\"");
+  else if (v.shape == ValveShape::trace &&
+           !std::filesystem::is_regular_file(beside_case(c, v.trace), ignored))
+    found.error("valve.trace", fmt::format("there is no file \"{}\"", beside_case(c, v.trace)),
+                "a file, relative to the folder of the case");
+  if (has_jet(c)) {
+    if (v.shape != ValveShape::trace && v.duration <= 0.0)
+      found.error("valve.duration", "the valve never opens", "a time, more than 0", "duration = \"8 ms\"");
+    if (v.opens_at + v.delay >= c.run.end_time)
+      found.error("valve.opens_at",
+                  fmt::format("the valve never opens: the run ends at {}, before it moves at {}",
+                              ms(c.run.end_time), ms(v.opens_at + v.delay)),
+                  "a time before run.end_time", "opens_at = \"0 ms\"");
+    if (v.supply_pressure <= c.environment.pressure)
+      found.error("valve.supply_pressure", "the supply is not above the ambient pressure: nothing flows",
+                  "more than ambient", "supply_pressure = \"700 kPa gauge\"");
+    const double bottom = c.grid.axis[2].points.empty() ? 0.0 : c.grid.axis[2].points.front();
+    if (c.jet.kind == JetKind::self_similar &&
+        bottom - c.jet.nozzle[2] - c.jet.virtual_origin * v.orifice_diameter < 10.0 * v.orifice_diameter)
+      found.error("jet.kind", "a self-similar jet needs the box to begin well above the nozzle",
+                  "at least 10 orifice diameters between jet.nozzle and z_min, or kind = \"velocity-inlet\"",
+                  "[grid.z] points = [\"40 mm\", \"120 mm\"]");
+    if (c.jet.kind == JetKind::velocity_inlet && std::abs(bottom - c.jet.nozzle[2]) > v.orifice_diameter)
+      found.error(
+          "jet.kind", "a velocity inlet stands in the nozzle's exit, but the box does not begin there",
+          "[grid.z] points from jet.nozzle on, or kind = \"self-similar\"", "kind = \"self-similar\"");
+    if (c.jet.kind == JetKind::computed && c.jet.source_case.empty())
+      found.error("jet.source_case", "a computed jet needs the case that computes it",
+                  "a case file beside this one", "source_case = \"jet.toml\"");
+    if (c.launch.enabled)
+      for (const BodySpec& b : c.bodies)
+        if (b.on_belt) check_pulse(c, b, found);
+  }
+  if (c.launch.enabled && c.launch.belt_speed <= 0.0)
+    found.error("launch.belt_speed", "a belt at rest launches nothing", "a velocity, more than 0",
+                "belt_speed = \"3 m/s\"");
+  if (c.splitter.enabled && c.bodies.empty())
+    found.warning("splitter", "a dividing plate without a body to divide");
+  if (c.launch.enabled &&
+      std::none_of(c.bodies.begin(), c.bodies.end(), [](const BodySpec& b) { return b.on_belt; }))
+    found.warning("launch", "no body comes from the belt", "on_belt = true in a [[body]]");
+}
+
+}  // namespace ejecta
