@@ -33,8 +33,10 @@ struct CheckpointWriter::Impl {
     const Hdf5Handle space(H5Screate_simple(1, &length, nullptr), H5Sclose);
     const Hdf5Handle links(H5Pcreate(H5P_LINK_CREATE), H5Pclose);
     H5Pset_create_intermediate_group(links, 1);
-    const Hdf5Handle data(
-        H5Dcreate2(file, name.c_str(), hdf5_type<T>(), space, links, H5P_DEFAULT, H5P_DEFAULT), H5Dclose);
+    const Hdf5Handle creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
+    H5Pset_obj_track_times(creation, false);  // the same state gives the same bits at any time of day
+    const Hdf5Handle data(H5Dcreate2(file, name.c_str(), hdf5_type<T>(), space, links, creation, H5P_DEFAULT),
+                          H5Dclose);
     if (!data || H5Dwrite(data, hdf5_type<T>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0)
       fail(fmt::format("cannot write \"{}\" into", name));
   }

@@ -30,7 +30,8 @@ std::string plain_report(std::string_view report_json) {
       "auto;padding:0 1em}"
       "th{text-align:left;font-weight:normal;padding-right:2em}td{font-variant-numeric:tabular-nums}</"
       "style></head><body>\n";
-  for (const ordered_json& run : ordered_json::parse(report_json).at("runs")) {
+  const ordered_json data = ordered_json::parse(report_json);
+  for (const ordered_json& run : data.at("runs")) {
     html += fmt::format("<h1>{}</h1>\n<p><strong>{}</strong></p>\n<table>\n",
                         xml_escaped(run.at("name").get<std::string>()),
                         xml_escaped(run.at("verdict").get<std::string>()));
