@@ -25,7 +25,7 @@ Shape make_sphere(double diameter) {
 Shape make_box(const Vec3& size) {
   for (int c = 0; c < 3; ++c) require_positive(size[c], "each edge of a box");
   auto data = std::make_shared<ShapeData>();
-  data->geometry = BoxGeometry{0.5 * size};
+  data->geometry = BoxGeometry{0.5 * size, {polytope_box(0.5 * size)}};
   data->mass = mass_box(size);
   data->bounding_radius = 0.5 * size.norm();
   data->smallest_feature = size.minCoeff();

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "shape/polytope.hpp"
 #include "shape/primitives.hpp"
 #include "shape/shape_data.hpp"
 #include "shape/surface_nets.hpp"
@@ -23,13 +24,35 @@ double area_balls(const std::vector<Ball>& balls, const Vec3& direction) {
   return area_discs(discs);
 }
 
-TriangleMesh surface_box(const Vec3& half) {
-  TriangleMesh mesh;
-  for (int c = 0; c < 8; ++c)
-    mesh.vertices.push_back(half.cwiseProduct(Vec3(c & 1 ? 1 : -1, c & 2 ? 1 : -1, c & 4 ? 1 : -1)));
-  mesh.triangles = {{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
-                    {2, 6, 7}, {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
-  return mesh;
+NearestPoint nearest_of(const std::vector<Polytope>& parts, const Vec3& p) {
+  NearestPoint nearest = nearest_on_polytope(parts.front(), p);
+  for (std::size_t n = 1; n < parts.size(); ++n) {
+    const NearestPoint other = nearest_on_polytope(parts[n], p);
+    if (other.distance < nearest.distance) nearest = other;
+  }
+  return nearest;
+}
+
+Vec3 support_of(const std::vector<Polytope>& parts, const Vec3& direction) {
+  Vec3 best = support_polytope(parts.front(), direction);
+  for (const Polytope& part : parts) {
+    const Vec3 p = support_polytope(part, direction);
+    if (direction.dot(p) > direction.dot(best)) best = p;
+  }
+  return best;
+}
+
+/// Half the sum of the triangles' shadows: exact where no line along `direction` meets the solid twice.
+double area_mesh(const TriangleMesh& mesh, const Vec3& direction) {
+  const Vec3 d = direction.normalized();
+  double sum = 0.0;
+  for (const auto& t : mesh.triangles) {
+    const Vec3& a = mesh.vertices[static_cast<std::size_t>(t[0])];
+    const Vec3& b = mesh.vertices[static_cast<std::size_t>(t[1])];
+    const Vec3& c = mesh.vertices[static_cast<std::size_t>(t[2])];
+    sum += std::abs(d.dot((b - a).cross(c - a)));
+  }
+  return 0.25 * sum;
 }
 
 TriangleMesh surface_ball(const Ball& ball, double tolerance) {
@@ -46,19 +69,22 @@ TriangleMesh surface_ball(const Ball& ball, double tolerance) {
 
 double Shape::signed_distance(const Vec3& p) const {
   return std::visit(Overloaded{[&](const BallsGeometry& g) { return distance_balls(g.balls, p); },
-                               [&](const BoxGeometry& g) { return distance_box(g.half, p); }},
+                               [&](const BoxGeometry& g) { return distance_box(g.half, p); },
+                               [&](const PolytopesGeometry& g) { return nearest_of(g.parts, p).distance; }},
                     data_->geometry);
 }
 
 Vec3 Shape::gradient(const Vec3& p) const {
   return std::visit(Overloaded{[&](const BallsGeometry& g) { return gradient_balls(g.balls, p); },
-                               [&](const BoxGeometry& g) { return gradient_box(g.half, p); }},
+                               [&](const BoxGeometry& g) { return gradient_box(g.half, p); },
+                               [&](const PolytopesGeometry& g) { return nearest_of(g.parts, p).normal; }},
                     data_->geometry);
 }
 
 Vec3 Shape::support(const Vec3& direction) const {
   return std::visit(Overloaded{[&](const BallsGeometry& g) { return support_balls(g.balls, direction); },
-                               [&](const BoxGeometry& g) { return support_box(g.half, direction); }},
+                               [&](const BoxGeometry& g) { return support_box(g.half, direction); },
+                               [&](const PolytopesGeometry& g) { return support_of(g.parts, direction); }},
                     data_->geometry);
 }
 
@@ -68,7 +94,8 @@ double Shape::projected_area(const Vec3& direction) const {
                                [&](const BoxGeometry& g) {
                                  return 4.0 * d.dot(Vec3(g.half.y() * g.half.z(), g.half.z() * g.half.x(),
                                                          g.half.x() * g.half.y()));
-                               }},
+                               },
+                               [&](const PolytopesGeometry& g) { return area_mesh(g.surface, direction); }},
                     data_->geometry);
 }
 
@@ -78,7 +105,19 @@ TriangleMesh Shape::surface(double tolerance) const {
                                  return g.balls.size() == 1 ? surface_ball(g.balls.front(), tolerance)
                                                             : surface_nets(*this, 5.0 * tolerance);
                                },
-                               [&](const BoxGeometry& g) { return surface_box(g.half); }},
+                               [&](const BoxGeometry& g) { return triangles_of(g.parts.front()); },
+                               [&](const PolytopesGeometry& g) { return g.surface; }},
+                    data_->geometry);
+}
+
+std::span<const Ball> Shape::balls() const {
+  const auto* g = std::get_if<BallsGeometry>(&data_->geometry);
+  return g ? std::span<const Ball>(g->balls) : std::span<const Ball>();
+}
+
+std::span<const Polytope> Shape::polytopes() const {
+  return std::visit(Overloaded{[](const BallsGeometry&) { return std::span<const Polytope>(); },
+                               [](const auto& g) { return std::span<const Polytope>(g.parts); }},
                     data_->geometry);
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 #include <array>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -10,6 +11,7 @@
 
 namespace ejecta {
 
+struct Polytope;
 struct ShapeData;
 
 /// Where the body axes lie in the axes the user wrote the shape in: p_user = centre + rotation * p_body.
@@ -44,7 +46,9 @@ class Shape {
   /// (0: one hundredth of the bounding radius).
   TriangleMesh surface(double tolerance = 0.0) const;
   const BodyFrame& frame() const;
-  const ShapeData& data() const { return *data_; }  ///< what contact detection looks into
+  /// The parts contact detection works on, body axes: a shape is a union of balls or of convex polytopes.
+  std::span<const Ball> balls() const;
+  std::span<const Polytope> polytopes() const;
 
   explicit Shape(std::shared_ptr<const ShapeData> data) : data_(std::move(data)) {}
 
@@ -61,5 +65,10 @@ Shape make_multisphere(const std::vector<Ball>& balls);
 /// The paper's clusters: count[0] x count[1] x count[2] spheres on a regular lattice whose outermost spheres
 /// touch the faces of the box `size` (27 = 3x3x3, 9 = 3x3x1).
 Shape make_cluster(const Vec3& size, const std::array<int, 3>& count, double sphere_diameter);
+/// Convex hull of the points.
+Shape make_polyhedron(const std::vector<Vec3>& points);
+/// A closed mesh, outward normals, of one or more separate convex pieces. `name` appears in errors, which
+/// name the open edge, the inverted or degenerate triangle, or the vertex that makes a piece concave.
+Shape make_mesh(const TriangleMesh& mesh, const std::string& name);
 
 }  // namespace ejecta

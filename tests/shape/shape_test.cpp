@@ -11,10 +11,13 @@ namespace ejecta {
 namespace {
 
 std::vector<std::pair<const char*, Shape>> all_shapes() {
-  return {{"sphere", make_sphere(2.0)},
-          {"box", make_box(Vec3(1, 2, 3))},
-          {"two balls", make_multisphere({{Vec3(0, 0, 0), 1.0}, {Vec3(1, 0.5, 0), 0.7}})},
-          {"cluster", make_cluster(Vec3(1, 1, 0.5), {3, 3, 1}, 0.5)}};
+  return {
+      {"sphere", make_sphere(2.0)},
+      {"box", make_box(Vec3(1, 2, 3))},
+      {"two balls", make_multisphere({{Vec3(0, 0, 0), 1.0}, {Vec3(1, 0.5, 0), 0.7}})},
+      {"cluster", make_cluster(Vec3(1, 1, 0.5), {3, 3, 1}, 0.5)},
+      {"polyhedron", make_polyhedron({{0, 0, 0}, {2, 0, 0}, {0, 1.5, 0}, {0.3, 0.2, 1.8}, {1.5, 1.4, 1.1}})},
+      {"mesh", make_mesh(icosphere(1), "icosphere")}};
 }
 
 TEST(Shape, SurfaceIsClosedAndLiesOnTheZeroDistance) {

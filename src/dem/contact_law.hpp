@@ -1,0 +1,140 @@
+#pragma once
+#include "dem/lanes.hpp"
+
+/// Contact laws: pure functions of one contact (or of eight, T = Lanes). They never ask what touches what.
+namespace ejecta {
+
+/// Constants of a pair of materials.
+template <class T>
+struct PairConstants {
+  T youngs{};     ///< Pa, E* = 1/((1-nu_a^2)/E_a + (1-nu_b^2)/E_b)
+  T shear{};      ///< Pa, G* = 1/((2-nu_a)/G_a + (2-nu_b)/G_b)
+  T stiffness{};  ///< N/m, linear law
+  T damping{};    ///< dimensionless, alpha of contact_damping.hpp
+  T friction{};   ///< Coulomb
+  T rolling{};    ///< rolling friction: moment / (radius * normal force)
+};
+
+/// What the narrow phase and the bodies say of a contact of a with b.
+template <class T>
+struct Contact {
+  Triple<T> normal;    ///< unit, from b to a
+  T overlap{};         ///< m, > 0
+  T radius{};          ///< m, 1/(1/r_a + 1/r_b)
+  T mass{};            ///< kg, 1/(1/m_a + 1/m_b)
+  Triple<T> velocity;  ///< m/s, of a relative to b at the contact point
+};
+
+template <class T>
+struct ContactForce {
+  Triple<T> force;           ///< N, on a
+  T normal{};                ///< N, its normal part, >= 0 unless tension is allowed
+  T tangential_stiffness{};  ///< N/m
+  T elastic{};               ///< J, stored in the normal and tangential springs
+};
+
+/// Normal spring, as stiffnesses at this overlap. Force = secant * overlap.
+template <class T>
+struct NormalSpring {
+  T secant{}, tangent{}, tangential{}, energy{};  ///< N/m, N/m, N/m, J
+};
+
+/// Hertz 1882: F = 4/3 E* sqrt(R) d^1.5; Mindlin 1949: tangential stiffness 8 G* sqrt(R d). Johnson 1985,
+/// Contact Mechanics, eqs 4.23 and 7.43.
+struct HertzMindlin {
+  template <class T>
+  static NormalSpring<T> spring(const Contact<T>& c, const PairConstants<T>& p) {
+    const T a = root(c.radius * c.overlap);
+    NormalSpring<T> s;
+    s.secant = (4.0 / 3.0) * p.youngs * a;
+    s.tangent = 1.5 * s.secant;
+    s.tangential = 8.0 * p.shear * a;
+    s.energy = 0.4 * s.secant * c.overlap * c.overlap;
+    return s;
+  }
+  /// Dashpot alpha sqrt(m k) d^(1/4) of Antypov & Elliott 2011, EPL 94:50004, with k d^(1/2) the secant.
+  template <class T>
+  static T dashpot(const NormalSpring<T>& s, const Contact<T>& c, const PairConstants<T>& p) {
+    return p.damping * root(c.mass * s.secant);
+  }
+};
+
+/// Cundall & Strack 1979, Geotechnique 29:47: F = k d, tangential stiffness 2/7 k (equal periods of a
+/// sphere's normal and tangential motion; Schaefer, Dippel & Wolf 1996).
+struct LinearSpring {
+  template <class T>
+  static NormalSpring<T> spring(const Contact<T>& c, const PairConstants<T>& p) {
+    NormalSpring<T> s;
+    s.secant = p.stiffness;
+    s.tangent = p.stiffness;
+    s.tangential = (2.0 / 7.0) * p.stiffness;
+    s.energy = 0.5 * p.stiffness * c.overlap * c.overlap;
+    return s;
+  }
+  template <class T>
+  static T dashpot(const NormalSpring<T>& s, const Contact<T>& c, const PairConstants<T>& p) {
+    return p.damping * root(c.mass * s.secant);
+  }
+};
+
+/// Force of a contact with friction. `slip` is the history: the stretch of the tangential spring (m), turned
+/// into the tangent plane, lengthened by the motion over dt and cut where the spring would exceed Coulomb's
+/// limit. The tangential dashpot is the normal one times sqrt(tangential / tangent stiffness), as for two
+/// oscillators of equal damping ratio (Tsuji, Tanaka & Ishida 1992, Powder Technol. 71:239).
+template <class Law, class T>
+ContactForce<T> contact_force(const Contact<T>& c, const PairConstants<T>& p, bool allow_tension, double dt,
+                              Triple<T>& slip) {
+  const NormalSpring<T> s = Law::spring(c, p);
+  const T dashpot = Law::dashpot(s, c, p);
+  const T approach = dot(c.velocity, c.normal);  // > 0: parting
+  T normal = s.secant * c.overlap - dashpot * approach;
+  if (!allow_tension) normal = larger(normal, T{});
+
+  const Triple<T> sliding = c.velocity - approach * c.normal;
+  slip = slip - dot(slip, c.normal) * c.normal + (T{} + dt) * sliding;
+  const T drag = dashpot * root(s.tangential / s.tangent);
+  Triple<T> tangential = (T{} - s.tangential) * slip - drag * sliding;
+  const T size = root(dot(tangential, tangential));
+  const T limit = p.friction * larger(normal, T{});
+  const T cut = size > limit ? limit / size : T{} + 1.0;
+  tangential = cut * tangential;
+  const Triple<T> cut_slip = (T{} - 1.0 / s.tangential) * tangential;
+  slip = {size > limit ? cut_slip.x : slip.x, size > limit ? cut_slip.y : slip.y,
+          size > limit ? cut_slip.z : slip.z};
+
+  ContactForce<T> f;
+  f.force = normal * c.normal + tangential;
+  f.normal = normal;
+  f.tangential_stiffness = s.tangential;
+  f.elastic = s.energy + 0.5 * s.tangential * dot(slip, slip);
+  return f;
+}
+
+/// Elastic-plastic rolling resistance (Iwashita & Oda 1998; type C of Ai et al. 2011, Powder Technol.
+/// 206:269): a spring against relative rolling, k = k_t R^2, cut at mu_r R F_n. `roll`: its angle (rad),
+/// history. `spin`: angular velocity of a relative to b, rad/s. Returns the moment on a, N m.
+template <class T>
+Triple<T> rolling_moment(const Contact<T>& c, const PairConstants<T>& p, const ContactForce<T>& f,
+                         const Triple<T>& spin, double dt, Triple<T>& roll) {
+  const T stiffness = f.tangential_stiffness * c.radius * c.radius;
+  roll = roll - dot(roll, c.normal) * c.normal + (T{} + dt) * (spin - dot(spin, c.normal) * c.normal);
+  const T size = stiffness * root(dot(roll, roll));
+  const T limit = p.rolling * c.radius * larger(f.normal, T{});
+  const T cut = size > limit ? limit / size : T{} + 1.0;
+  roll = cut * roll;
+  return (T{} - stiffness) * roll;
+}
+
+/// Friction against twisting about the normal of a flat patch of radius a under even pressure: springs of the
+/// tangential stiffness spread over the patch give k_t a^2 / 2; all of it slides at 2/3 mu F_n a.
+/// `twist`: angle (rad), history. Returns the moment on a about the normal, N m.
+inline double twisting_moment(double patch_radius, const PairConstants<double>& p,
+                              const ContactForce<double>& f, double spin, double dt, double& twist) {
+  const double stiffness = 0.5 * f.tangential_stiffness * patch_radius * patch_radius;
+  if (!(stiffness > 0)) return 0.0;
+  const double limit = 2.0 / 3.0 * p.friction * larger(f.normal, 0.0) * patch_radius / stiffness;
+  twist = smaller(larger(twist + dt * spin, -limit), limit);
+  return -stiffness * twist;
+}
+
+}  // namespace ejecta

@@ -1,0 +1,96 @@
+#include "dem/materials.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "base/error.hpp"
+#include "dem/contact_damping.hpp"
+
+namespace ejecta {
+namespace {
+
+void require(bool good, const MaterialSpec& m, const char* key, double value, const char* range) {
+  if (!good) throw InputError(fmt::format("material \"{}\": {} = {} must be {}", m.name, key, value, range));
+}
+
+void check(const MaterialSpec& m) {
+  require(m.youngs_modulus > 0, m, "youngs_modulus", m.youngs_modulus,
+          m.friction > 0 ? "positive: friction needs a stiffness (the paper's is 5 MPa)"
+                         : "positive (the paper's is 5 MPa)");
+  require(m.poisson_ratio > -1 && m.poisson_ratio <= 0.5, m, "poisson_ratio", m.poisson_ratio,
+          "in (-1, 0.5]");
+  require(m.density > 0, m, "density", m.density, "positive (quartz: 2700 kg/m3)");
+  require(m.restitution >= 0.01 && m.restitution <= 1, m, "restitution", m.restitution, "in [0.01, 1]");
+  require(m.friction >= 0, m, "friction", m.friction, "zero or positive");
+  require(m.rolling_friction >= 0, m, "rolling_friction", m.rolling_friction, "zero or positive");
+}
+
+double shear_modulus(const MaterialSpec& m) { return m.youngs_modulus / (2 * (1 + m.poisson_ratio)); }
+
+}  // namespace
+
+Materials::Materials(const Case& config)
+    : specs_(config.materials), law_(config.contact.law), allow_tension_(config.contact.allow_tension) {
+  for (const MaterialSpec& m : specs_) check(m);
+  if (law_ == ContactLaw::linear && !(config.contact.linear_stiffness > 0) && !specs_.empty())
+    throw InputError(
+        fmt::format("contact.linear_stiffness = {} N/m must be positive with law = \"linear\": a contact "
+                    "without stiffness bears neither load nor friction (try 1e5 N/m)",
+                    config.contact.linear_stiffness));
+  std::map<double, double> damping;  // of a restitution; bisecting for it is worth doing once
+  const auto damping_of = [&](double e) {
+    const auto found = damping.find(e);
+    if (found != damping.end()) return found->second;
+    return damping[e] = law_ == ContactLaw::linear ? damping_linear(e, allow_tension_)
+                                                   : damping_hertz(e, allow_tension_);
+  };
+  for (const MaterialSpec& a : specs_)
+    for (const MaterialSpec& b : specs_) {
+      double restitution = std::min(a.restitution, b.restitution);
+      double friction = std::min(a.friction, b.friction);
+      double rolling = std::min(a.rolling_friction, b.rolling_friction);
+      for (const MaterialPairSpec& p : config.material_pairs)
+        if ((p.a == a.name && p.b == b.name) || (p.a == b.name && p.b == a.name)) {
+          restitution = p.restitution.value_or(restitution);
+          friction = p.friction.value_or(friction);
+          rolling = p.rolling_friction.value_or(rolling);
+        }
+      if (!(restitution >= 0.01 && restitution <= 1 && friction >= 0 && rolling >= 0))
+        throw InputError(
+            fmt::format("material_pair \"{}\"-\"{}\": restitution {} must be in [0.01, 1], friction {} and "
+                        "rolling_friction {} zero or positive",
+                        a.name, b.name, restitution, friction, rolling));
+      PairConstants<double> c;
+      c.youngs = 1 / ((1 - a.poisson_ratio * a.poisson_ratio) / a.youngs_modulus +
+                      (1 - b.poisson_ratio * b.poisson_ratio) / b.youngs_modulus);
+      c.shear = 1 / ((2 - a.poisson_ratio) / shear_modulus(a) + (2 - b.poisson_ratio) / shear_modulus(b));
+      c.stiffness = config.contact.linear_stiffness;
+      c.damping = damping_of(restitution);
+      c.friction = friction;
+      c.rolling = rolling;
+      pairs_.push_back(c);
+    }
+  for (const MaterialPairSpec& p : config.material_pairs) {
+    index(p.a);
+    index(p.b);
+  }
+}
+
+int Materials::index(const std::string& name) const {
+  std::string known;
+  for (std::size_t n = 0; n < specs_.size(); ++n) {
+    if (specs_[n].name == name) return static_cast<int>(n);
+    known += (n ? ", \"" : "\"") + specs_[n].name + "\"";
+  }
+  throw InputError(
+      fmt::format("material \"{}\" is not defined; known: {}", name, known.empty() ? "none" : known));
+}
+
+bool Materials::any_rolling() const {
+  return std::any_of(pairs_.begin(), pairs_.end(), [](const auto& p) { return p.rolling > 0; });
+}
+
+}  // namespace ejecta

@@ -1,0 +1,34 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "case/case.hpp"
+#include "dem/contact_law.hpp"
+
+namespace ejecta {
+
+/// Materials of a case and the constants of each pair of them.
+class Materials {
+ public:
+  /// Throws InputError naming the material and the value that is out of range.
+  explicit Materials(const Case& config);
+
+  int count() const { return static_cast<int>(specs_.size()); }
+  /// Index of a material by name. Throws InputError with the known names.
+  int index(const std::string& name) const;
+  const MaterialSpec& spec(int index) const { return specs_[static_cast<std::size_t>(index)]; }
+  const PairConstants<double>& pair(int a, int b) const {
+    return pairs_[static_cast<std::size_t>(a * count() + b)];
+  }
+  ContactLaw law() const { return law_; }
+  bool allow_tension() const { return allow_tension_; }
+  bool any_rolling() const;
+
+ private:
+  std::vector<MaterialSpec> specs_;
+  std::vector<PairConstants<double>> pairs_;
+  ContactLaw law_;
+  bool allow_tension_;
+};
+
+}  // namespace ejecta

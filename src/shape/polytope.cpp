@@ -1,0 +1,104 @@
+#include "shape/polytope.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace ejecta {
+namespace {
+
+const Vec3& corner(const Polytope& p, const Polytope::Face& f, int n) {
+  return p.vertices[static_cast<std::size_t>(p.corners[static_cast<std::size_t>(f.first + n)])];
+}
+
+}  // namespace
+
+Polytope polytope_box(const Vec3& half) {
+  Polytope p;
+  for (int c = 0; c < 8; ++c)
+    p.vertices.push_back(half.cwiseProduct(Vec3(c & 1 ? 1 : -1, c & 2 ? 1 : -1, c & 4 ? 1 : -1)));
+  p.corners = {0, 4, 6, 2, 1, 3, 7, 5, 0, 1, 5, 4, 2, 6, 7, 3, 0, 2, 3, 1, 4, 5, 7, 6};
+  for (int f = 0; f < 6; ++f)
+    p.faces.push_back({(f % 2 ? 1.0 : -1.0) * Vec3::Unit(f / 2), half[f / 2], 4 * f, 4});
+  p.radius = half.norm();
+  return p;
+}
+
+Polytope moved(const Polytope& p, const Mat3& rotation, const Vec3& translation) {
+  Polytope q = p;
+  for (Vec3& v : q.vertices) v = rotation * v + translation;
+  for (Polytope::Face& f : q.faces) {
+    f.normal = rotation * f.normal;
+    f.offset += f.normal.dot(translation);
+  }
+  q.centre = rotation * p.centre + translation;
+  return q;
+}
+
+TriangleMesh triangles_of(const Polytope& p) {
+  TriangleMesh mesh{p.vertices, {}};
+  for (const Polytope::Face& f : p.faces)
+    for (int n = 1; n + 1 < f.count; ++n) {
+      const auto* c = p.corners.data() + f.first;
+      mesh.triangles.push_back({c[0], c[n], c[n + 1]});
+    }
+  return mesh;
+}
+
+Vec3 nearest_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
+  const Vec3 ab = b - a, ac = c - a, ap = p - a;
+  const double d1 = ab.dot(ap), d2 = ac.dot(ap);
+  if (d1 <= 0 && d2 <= 0) return a;
+  const Vec3 bp = p - b;
+  const double d3 = ab.dot(bp), d4 = ac.dot(bp);
+  if (d3 >= 0 && d4 <= d3) return b;
+  const double vc = d1 * d4 - d3 * d2;
+  if (vc <= 0 && d1 >= 0 && d3 <= 0) return a + d1 / (d1 - d3) * ab;
+  const Vec3 cp = p - c;
+  const double d5 = ab.dot(cp), d6 = ac.dot(cp);
+  if (d6 >= 0 && d5 <= d6) return c;
+  const double vb = d5 * d2 - d1 * d6;
+  if (vb <= 0 && d2 >= 0 && d6 <= 0) return a + d2 / (d2 - d6) * ac;
+  const double va = d3 * d6 - d5 * d4;
+  if (va <= 0 && d4 >= d3 && d5 >= d6) return b + (d4 - d3) / (d4 - d3 + d5 - d6) * (c - b);
+  return a + (vb * ab + vc * ac) / (va + vb + vc);
+}
+
+NearestPoint nearest_on_polytope(const Polytope& p, const Vec3& point) {
+  NearestPoint inside{-std::numeric_limits<double>::infinity(), Vec3::UnitZ()};
+  for (const Polytope::Face& f : p.faces) {
+    const double d = f.normal.dot(point) - f.offset;
+    if (d > inside.distance) inside = {d, f.normal};
+  }
+  if (inside.distance <= 0) return inside;
+  Vec3 nearest = point;
+  double best = std::numeric_limits<double>::infinity();
+  for (const Polytope::Face& f : p.faces) {
+    const double d = f.normal.dot(point) - f.offset;
+    if (d <= 0 || d * d >= best) continue;  // a face seen from behind is never the nearest
+    for (int n = 1; n + 1 < f.count; ++n) {
+      const Vec3 q = nearest_on_triangle(point, corner(p, f, 0), corner(p, f, n), corner(p, f, n + 1));
+      const double d2 = (point - q).squaredNorm();
+      if (d2 < best) {
+        best = d2;
+        nearest = q;
+      }
+    }
+  }
+  const double distance = std::sqrt(best);
+  return {distance, distance > 0 ? Vec3((point - nearest) / distance) : inside.normal};
+}
+
+Vec3 support_polytope(const Polytope& p, const Vec3& direction) {
+  return *std::max_element(p.vertices.begin(), p.vertices.end(),
+                           [&](const Vec3& a, const Vec3& b) { return direction.dot(a) < direction.dot(b); });
+}
+
+double width_polytope(const Polytope& p) {
+  double width = std::numeric_limits<double>::infinity();
+  for (const Polytope::Face& f : p.faces)
+    width = std::min(width, f.offset - f.normal.dot(support_polytope(p, -f.normal)));
+  return width;
+}
+
+}  // namespace ejecta

@@ -1,0 +1,45 @@
+#pragma once
+#include <vector>
+
+#include "base/vec.hpp"
+#include "shape/triangle_mesh.hpp"
+
+namespace ejecta {
+
+/// A convex solid bounded by flat faces. Lengths in m.
+struct Polytope {
+  struct Face {
+    Vec3 normal;               ///< unit, outward
+    double offset = 0.0;       ///< normal . x <= offset inside
+    int first = 0, count = 0;  ///< its corners, counter-clockwise, in `corners`
+  };
+  std::vector<Vec3> vertices;
+  std::vector<Face> faces;
+  std::vector<int> corners;  ///< indices of vertices, face after face
+  Vec3 centre{0, 0, 0};      ///< of a sphere that holds it
+  double radius = 0.0;       ///< of that sphere
+};
+
+/// Convex hull of the points; coplanar triangles become one face. Throws InputError where the points have no
+/// volume.
+Polytope convex_hull(const std::vector<Vec3>& points);
+Polytope polytope_box(const Vec3& half);
+/// The polytope moved to other axes: p -> rotation * p + translation.
+Polytope moved(const Polytope& p, const Mat3& rotation, const Vec3& translation);
+/// Fan triangles of its faces.
+TriangleMesh triangles_of(const Polytope& p);
+
+/// The point of a closed triangle nearest to p (Ericson 2005, Real-Time Collision Detection, 5.1.5).
+Vec3 nearest_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c);
+
+struct NearestPoint {
+  double distance = 0.0;  ///< signed, m
+  Vec3 normal{0, 0, 1};   ///< unit, outward
+};
+/// Exact signed distance of a point and its gradient.
+NearestPoint nearest_on_polytope(const Polytope& p, const Vec3& point);
+Vec3 support_polytope(const Polytope& p, const Vec3& direction);
+/// Smallest distance between two parallel planes that hold the polytope, one of them on a face.
+double width_polytope(const Polytope& p);
+
+}  // namespace ejecta
