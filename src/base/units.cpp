@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "base/error.hpp"
+#include "base/text.hpp"
 
 namespace ejecta {
 namespace {
@@ -173,22 +174,7 @@ std::pair<std::optional<double>, std::string_view> split(std::string_view text) 
   return {value, trim(text.substr(static_cast<std::size_t>(end - text.data())))};
 }
 
-std::string list_units(Dimension d) { return fmt::format("{}", fmt::join(known_units(d), ", ")); }
-
-std::size_t edit_distance(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    std::size_t diagonal = row[0];
-    row[0] = i;
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      const std::size_t above = row[j];
-      row[j] = std::min({row[j] + 1, row[j - 1] + 1, diagonal + (a[i - 1] == b[j - 1] ? 0 : 1)});
-      diagonal = above;
-    }
-  }
-  return row[b.size()];
-}
+std::string list_units(Dimension d) { return joined(known_units(d)); }
 
 }  // namespace
 
@@ -262,21 +248,6 @@ std::string format_quantity(double si, Dimension d) {
 std::optional<double> parse_number(std::string_view text) {
   const auto [value, rest] = split(text);
   return rest.empty() ? value : std::nullopt;
-}
-
-std::string nearest(std::string_view word, const std::vector<std::string>& candidates) {
-  std::string best;
-  std::size_t least = std::max<std::size_t>(1, word.size() / 3) + 1;
-  for (const std::string& c : candidates) {
-    // The beginning of a longer word is a likely abbreviation, as near as one wrong letter.
-    const bool begins = word.size() > 2 && c.starts_with(word);
-    const std::size_t distance = begins ? 1 : edit_distance(word.substr(0, 100), c);
-    if (distance < least) {
-      least = distance;
-      best = c;
-    }
-  }
-  return best;
 }
 
 }  // namespace ejecta

@@ -51,7 +51,5 @@ std::string format_quantity(double si, Dimension d);
 /// A finite number that fills the whole text, e.g. "1.5e-3"; nothing for anything else (also NaN and
 /// infinity).
 std::optional<double> parse_number(std::string_view text);
-/// The candidate that differs from `word` in the fewest letters, if it is a likely typing error; else "".
-std::string nearest(std::string_view word, const std::vector<std::string>& candidates);
 
 }  // namespace ejecta

@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "base/text.hpp"
+
 namespace ejecta {
 namespace {
 
@@ -101,8 +103,7 @@ struct TypeWords {
   Dimension d;
   std::string one() const { return std::string(describe(d)); }
   std::string many() const {
-    return d == Dimension::none ? "numbers"
-                                : fmt::format("quantities in {}", fmt::join(known_units(d), ", "));
+    return d == Dimension::none ? "numbers" : fmt::format("quantities in {}", joined(known_units(d)));
   }
   std::string operator()(const bool*) const { return "true or false"; }
   std::string operator()(const int*) const { return "a whole number"; }
@@ -126,14 +127,14 @@ struct TypeWords {
   std::string operator()(const Choice& c) const {
     std::vector<std::string> names;
     for (const Word& w : *c.words) names.push_back(quoted(w.name));
-    return fmt::format("one of {}", fmt::join(names, ", "));
+    return fmt::format("one of {}", joined(names));
   }
   std::string operator()(const Formula&) const { return one() + units() + " or a formula \"= ...\""; }
   std::string operator()(const Formulas&) const { return "a list of 3 " + many() + " or formulas \"= ...\""; }
 
  private:
   std::string units() const {
-    return d == Dimension::none ? "" : fmt::format(" in {}", fmt::join(known_units(d), ", "));
+    return d == Dimension::none ? "" : fmt::format(" in {}", joined(known_units(d)));
   }
 };
 

@@ -7,6 +7,7 @@
 #include <limits>
 #include <map>
 
+#include "base/text.hpp"
 #include "base/units.hpp"
 #include "case/read_value.hpp"
 #include "case/schema.hpp"
@@ -168,7 +169,7 @@ class CaseReader {
     std::vector<std::string> unique;
     for (const std::string& name : names)
       if (std::find(unique.begin(), unique.end(), name) == unique.end()) unique.push_back(name);
-    p.expected = fmt::format("one of {}", fmt::join(unique, ", "));
+    p.expected = fmt::format("one of {}", joined(unique));
     problems_.push_back(p);
   }
 

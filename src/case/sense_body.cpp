@@ -4,6 +4,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "base/text.hpp"
 #include "base/units.hpp"
 #include "case/extent.hpp"
 #include "case/findings.hpp"
@@ -31,10 +32,9 @@ void require_material(const Case& c, const std::string& key, const std::string& 
   std::vector<std::string> known;
   for (const MaterialSpec& m : c.materials) known.push_back(m.name);
   if (std::find(known.begin(), known.end(), name) != known.end()) return;
-  found.error(
-      key, fmt::format("there is no material \"{}\"", name),
-      known.empty() ? "a [[material]] of that name" : fmt::format("one of {}", fmt::join(known, ", ")),
-      fmt::format("[[material]] name = \"{}\"", name));
+  found.error(key, fmt::format("there is no material \"{}\"", name),
+              known.empty() ? "a [[material]] of that name" : fmt::format("one of {}", joined(known)),
+              fmt::format("[[material]] name = \"{}\"", name));
   found.list.back().nearest = nearest(name, known);
 }
 
