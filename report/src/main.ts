@@ -1,1 +1,121 @@
-console.log(1);export {}
+import "./style.css";
+import { bodyColour, isDark } from "./colour";
+import { readRuns, type Run } from "./data";
+import { h, section } from "./dom";
+import { motionCharts, seriesCharts } from "./motion_charts";
+import { pathView } from "./path";
+import { Player } from "./player";
+import { profileCharts } from "./profile_charts";
+import { replayView } from "./replay_view";
+import {
+  assumptionList, bodyCards, costTable, expectationTable, ledgerTable, operatorTable, provenanceTable, resultTable,
+} from "./tables";
+
+/** Light or dark as the system asks; paper is always light. */
+function followTheme(): void {
+  const dark = matchMedia("(prefers-color-scheme: dark)");
+  const set = (theme: string): void => {
+    if (document.documentElement.dataset["theme"] === theme) return;
+    document.documentElement.dataset["theme"] = theme;
+    paintSwatches();
+    document.dispatchEvent(new Event("themechange"));
+  };
+  const follow = (): void => set(dark.matches ? "dark" : "light");
+  dark.addEventListener("change", follow);
+  addEventListener("beforeprint", () => {
+    set("light");
+    for (const d of document.querySelectorAll("details")) d.open = true;
+  });
+  addEventListener("afterprint", follow);
+  follow();
+}
+
+function paintSwatches(): void {
+  for (const swatch of document.querySelectorAll<HTMLElement>("[data-body]"))
+    swatch.style.setProperty("--colour", bodyColour(Number(swatch.dataset["body"]), isDark()));
+}
+
+/** From the first to the last moment of any run; starts where the air pushes hardest. */
+function makePlayer(runs: Run[]): Player {
+  const times = runs.flatMap((run) => [
+    ...(run.replay?.frames.map((f) => f.time) ?? []), ...[...run.history.values()].flatMap((t) => [t.values[0]![0] ?? 0, t.values[0]!.at(-1) ?? 0])]);
+  const player = new Player(times.length ? Math.min(...times) : 0, times.length ? Math.max(...times) : 1);
+  let strongest = 0;
+  for (const [name, table] of runs[0]?.history ?? []) {
+    if (!name.startsWith("body-")) continue;
+    const parts = table.columns.flatMap((c, n) => (/^force_[xyz]$/.test(c.name) ? [table.values[n]!] : []));
+    table.values[0]!.forEach((t, n) => {
+      const size = Math.hypot(...parts.map((p) => p[n]!));
+      if (size > strongest) {
+        strongest = size;
+        player.time = t;
+      }
+    });
+  }
+  return player;
+}
+
+function titleOf(runs: Run[]): string {
+  return runs.map((run) => String(run.result?.["title"] || run.name)).filter((t, n, all) => all.indexOf(t) === n).join(" \u00b7 ");
+}
+
+function verdict(runs: Run[]): HTMLElement {
+  const head = h("header", { class: "verdict" }, h("p", { class: "title" }, titleOf(runs)));
+  if (runs.length === 1) head.append(h("h1", { id: "verdict" }, runs[0]!.verdict));
+  else head.append(h("h1", {}, `${runs.length} runs compared`),
+    h("ul", { class: "verdicts" }, ...runs.map((run, r) => h("li", {},
+      h("span", { class: r > 0 ? "swatch dashed ink" : "swatch ink" }), h("strong", {}, `${run.name}: `), run.verdict))));
+  const cards = bodyCards(runs);
+  if (cards) head.append(cards);
+  return head;
+}
+
+function caseFile(run: Run): HTMLElement {
+  const copy = h("button", { type: "button", class: "copy" }, "Copy");
+  copy.addEventListener("click", () => {
+    void navigator.clipboard.writeText(run.caseText).then(() => (copy.textContent = "Copied"));
+  });
+  return h("details", {}, h("summary", {}, `Case file of ${run.name}, as resolved`), copy,
+    h("pre", { tabindex: 0, "aria-label": `Case file of ${run.name}` }, h("code", {}, run.caseText)));
+}
+
+function page(runs: Run[]): HTMLElement {
+  const player = makePlayer(runs);
+  const main = h("main", { id: "content" }, verdict(runs));
+  const add = (id: string, title: string, note: string, ...content: (Node | null)[]): void => {
+    if (content.some(Boolean)) main.append(section(id, title, note, ...content));
+  };
+  const grid = (charts: HTMLElement[]): HTMLElement | null =>
+    charts.length > 0 ? h("div", { class: "chart-grid" }, ...charts) : null;
+
+  add("path", "Path", "Side view to scale, bodies drawn every fourteenth of the time.", pathView(runs, player));
+  add("replay", "Replay", "", replayView(runs, player));
+  add("motion", "Motion", "x along the belt, y across it, z up and along the jet.", motionCharts(runs, player));
+  add("jet", "Jet", "", grid([...profileCharts(runs), ...seriesCharts(runs, player, (n) => n.startsWith("probe-"))]));
+  add("expected", "Expected values", "", ...runs.map(expectationTable));
+  add("books", "Books and cost", "What goes in minus what comes out, relative to what went through; and where the time went.",
+    h("div", { class: "columns" }, costTable(runs), ledgerTable(runs)), ...runs.map(operatorTable),
+    grid(seriesCharts(runs, player, (n) => !/^(body|line|probe)-/.test(n))));
+  add("assumptions", "Assumptions", "Taken for granted by this run; each can be changed in the case file.", ...runs.map(assumptionList));
+  add("provenance", "Provenance", "", provenanceTable(runs), ...runs.filter((run) => run.caseText).map(caseFile),
+    ...runs.map((run, r) => run.result && h("details", {}, h("summary", {}, `All of result.json of ${run.name}`), resultTable(run, r))));
+
+  const links = [...main.querySelectorAll("section")].map((s) =>
+    h("a", { href: `#${s.id}` }, s.querySelector("h2")!.textContent));
+  return h("div", {},
+    h("a", { class: "skip", href: "#content" }, "Skip to the verdict"),
+    h("nav", { "aria-label": "Sections" }, h("span", { class: "brand" }, "Ejecta"), ...links),
+    main,
+    h("footer", {}, `Ejecta ${String(runs[0]?.manifest?.["version"] ?? "")} \u00b7 one file, works offline`));
+}
+
+readRuns().then((runs) => {
+  document.title = `${titleOf(runs)} \u2013 Ejecta report`;
+  document.getElementById("app")!.replaceChildren(page(runs));
+  followTheme();
+  document.documentElement.dataset["ready"] = "true";
+}).catch((error: unknown) => {
+  document.getElementById("app")!.replaceChildren(
+    h("main", {}, h("h1", {}, "This report cannot be shown"), h("p", {}, String(error))));
+  throw error;
+});

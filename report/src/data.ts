@@ -1,0 +1,163 @@
+/** What the page shows: the JSON written by `report_json` (docs/files.md), decoded. SI units. */
+
+export type Vec3 = [number, number, number];
+/** w, x, y, z; turns body axes into the world. */
+export type Quat = [number, number, number, number];
+
+export type Json = null | boolean | number | string | Json[] | { [key: string]: Json };
+export type JsonObject = { [key: string]: Json };
+
+export interface Column {
+  name: string;
+  unit: string;
+}
+
+export interface Table {
+  columns: Column[];
+  values: Float32Array[];
+}
+
+export interface Raster {
+  name: string;
+  axis: number;
+  position: number;
+  lower: [number, number];
+  upper: [number, number];
+  pixels: [number, number];
+}
+
+export interface Surface {
+  name: string;
+  vertices: Float32Array;
+  triangles: Uint32Array;
+}
+
+export interface Plate {
+  name: string;
+  edge: Vec3;
+  along: Vec3;
+  across: Vec3;
+  length: number;
+  width: number;
+  thickness: number;
+}
+
+export interface Nozzle {
+  position: Vec3;
+  direction: Vec3;
+  diameter: number;
+}
+
+export interface Pose {
+  position: Vec3;
+  orientation: Quat;
+}
+
+/** Speed = pixel / 255 * fullScale, m/s. */
+export interface SliceFrame {
+  fullScale: number;
+  pixels: Uint8Array;
+}
+
+export interface Frame {
+  time: number;
+  poses: Pose[];
+  /** By raster; missing where no air is computed. */
+  slices: Map<number, SliceFrame>;
+}
+
+export interface Replay {
+  domain: [Vec3, Vec3];
+  rasters: Raster[];
+  bodies: Surface[];
+  plates: Plate[];
+  nozzles: Nozzle[];
+  undisturbed: Vec3[][];
+  valveOpen: [number, number][];
+  frames: Frame[];
+}
+
+export interface Run {
+  name: string;
+  verdict: string;
+  result: JsonObject | null;
+  manifest: JsonObject | null;
+  caseText: string;
+  history: Map<string, Table>;
+  replay: Replay | null;
+}
+
+function bytesOf(base64: string): Uint8Array {
+  const text = atob(base64);
+  const bytes = new Uint8Array(text.length);
+  for (let n = 0; n < text.length; ++n) bytes[n] = text.charCodeAt(n);
+  return bytes;
+}
+
+async function inflate(bytes: Uint8Array): Promise<Uint8Array> {
+  const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("deflate"));
+  return new Uint8Array(await new Response(stream).arrayBuffer());
+}
+
+/* eslint-disable @typescript-eslint/no-explicit-any -- the JSON's shape is fixed by docs/files.md */
+async function readFrame(line: any): Promise<Frame> {
+  const slices = new Map<number, SliceFrame>();
+  for (const s of line.slices)
+    slices.set(s.raster, { fullScale: s.full_scale, pixels: await inflate(bytesOf(s.data)) });
+  const poses = line.bodies.map((b: number[]): Pose => ({
+    position: b.slice(0, 3) as Vec3,
+    orientation: b.slice(3, 7) as Quat,
+  }));
+  return { time: line.time, poses, slices };
+}
+
+async function readReplay(lines: any[]): Promise<Replay | null> {
+  if (lines.length < 2) return null;
+  const [h, ...frames] = lines;
+  return {
+    domain: h.domain,
+    rasters: h.rasters,
+    bodies: h.bodies.map((b: any) => ({
+      name: b.name,
+      vertices: new Float32Array(bytesOf(b.vertices).buffer),
+      triangles: new Uint32Array(bytesOf(b.triangles).buffer),
+    })),
+    plates: h.plates,
+    nozzles: h.nozzles,
+    undisturbed: h.undisturbed,
+    valveOpen: h.valve_open,
+    frames: await Promise.all(frames.map(readFrame)),
+  };
+}
+
+function readTable(t: any): Table {
+  return { columns: t.columns, values: t.data.map((d: string) => new Float32Array(bytesOf(d).buffer)) };
+}
+
+async function readRun(r: any): Promise<Run> {
+  return {
+    name: r.name,
+    verdict: r.verdict,
+    result: r.result,
+    manifest: r.manifest,
+    caseText: r.case,
+    history: new Map(Object.entries(r.history).map(([name, table]) => [name, readTable(table)])),
+    replay: await readReplay(r.replay),
+  };
+}
+
+export async function readRuns(): Promise<Run[]> {
+  const data = JSON.parse(document.getElementById("ejecta-data")!.textContent!);
+  return Promise.all(data.runs.map(readRun));
+}
+
+/** Values of a column, or nothing. */
+export function columnOf(table: Table, name: string): Float32Array | undefined {
+  const n = table.columns.findIndex((c) => c.name === name);
+  return n < 0 ? undefined : table.values[n];
+}
+
+export function bodiesOf(run: Run): JsonObject[] {
+  const bodies = run.result?.["bodies"];
+  return Array.isArray(bodies) ? (bodies as JsonObject[]) : [];
+}

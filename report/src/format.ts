@@ -1,0 +1,54 @@
+/** Numbers as an engineer writes them. */
+
+export function fixed(value: number, digits: number): string {
+  return value.toFixed(digits).replace(/^-/, "\u2212").replace(/^\u2212(0(\.0*)?)$/, "$1");
+}
+
+/** Three or so significant digits, thin powers of ten. */
+export function short(value: number, digits = 3): string {
+  if (value === 0) return "0";
+  const size = Math.abs(value);
+  if (size >= 1e-3 && size < 1e5) {
+    const decimals = Math.max(0, digits - 1 - Math.floor(Math.log10(size)));
+    return fixed(value, decimals);
+  }
+  const [mantissa, exponent] = value.toExponential(digits - 1).split("e");
+  return `${mantissa!.replace("-", "\u2212")}\u00d710${superscript(Number(exponent))}`;
+}
+
+function superscript(n: number): string {
+  const digits = "\u2070\u00b9\u00b2\u00b3\u2074\u2075\u2076\u2077\u2078\u2079";
+  return (n < 0 ? "\u207b" : "") + [...String(Math.abs(n))].map((d) => digits[Number(d)]).join("");
+}
+
+export function thousands(value: number): string {
+  return Math.round(value).toString().replace(/\B(?=(\d{3})+$)/g, "\u202f");
+}
+
+export function duration(seconds: number): string {
+  if (seconds < 60) return `${short(seconds)} s`;
+  const whole = Math.round(seconds);
+  if (whole < 3600) return `${Math.floor(whole / 60)} min ${whole % 60} s`;
+  return `${Math.floor(whole / 3600)} h ${Math.floor((whole % 3600) / 60)} min`;
+}
+
+/** "momentum_relative_residual" -> "Momentum relative residual". */
+export function words(key: string): string {
+  const text = key.replace(/_/g, " ");
+  return text.charAt(0).toUpperCase() + text.slice(1);
+}
+
+/** Unit as printed: "N m" -> "N·m", "1" -> nothing. */
+export function unitText(unit: string): string {
+  return unit === "1" ? "" : unit.replace(/ /g, "\u00b7").replace(/(?<=m|s)2\b/g, "\u00b2");
+}
+
+/** Ticks at 1, 2 or 5 times a power of ten. */
+export function ticks(from: number, to: number, about: number): number[] {
+  const raw = (to - from) / about;
+  const power = 10 ** Math.floor(Math.log10(raw));
+  const step = power * ([1, 2, 5, 10].find((s) => s * power >= raw) ?? 10);
+  const list = [];
+  for (let n = Math.ceil(from / step - 1e-9); n * step <= to + 1e-9 * step; ++n) list.push(n * step);
+  return list;
+}

@@ -1,0 +1,110 @@
+import { chart, axisLabel, type Series } from "./charts";
+import { bodyColour, componentColour } from "./colour";
+import { columnOf, type Run, type Table } from "./data";
+import { h } from "./dom";
+import { words } from "./format";
+import type { Player } from "./player";
+
+const QUANTITIES: [prefix: string, title: string, unit: string][] = [
+  ["velocity", "Velocity", "m/s"],
+  ["force", "Force of the air", "N"],
+  ["torque", "Torque of the air", "N m"],
+  ["spin", "Spin", "rad/s"],
+  ["contact_force", "Contact force", "N"],
+];
+const COMPONENTS = ["x", "y", "z"];
+
+const milliseconds = (table: Table): Float64Array => Float64Array.from(table.values[0]!, (t) => t * 1e3);
+
+/** Values of `table` at the times of another one, straight lines between rows. */
+function resampled(times: ArrayLike<number>, table: Table, values: Float32Array): (number | null)[] {
+  const own = milliseconds(table);
+  let n = 0;
+  return Array.from(times, (t) => {
+    if (t < own[0]! - 1e-9 || t > own[own.length - 1]! + 1e-9) return null;
+    while (n + 2 < own.length && own[n + 1]! < t) ++n;
+    const span = own[n + 1]! - own[n]!;
+    const s = span > 0 ? (t - own[n]!) / span : 0;
+    return values[n]! + s * (values[n + 1]! - values[n]!);
+  });
+}
+
+/** Velocity, force, torque and spin of one body over time; further runs dashed. */
+function chartsOfBody(name: string, runs: Run[], player: Player): HTMLElement {
+  const found = runs.flatMap((run) => {
+    const table = run.history.get(`body-${name}`);
+    return table && table.values[0]!.length > 1 ? [{ run, table }] : [];
+  });
+  const grid = h("div", { class: "chart-grid" });
+  const first = found[0];
+  if (!first) return grid;
+  const x = milliseconds(first.table);
+  for (const [prefix, title, unit] of QUANTITIES) {
+    const series: Series[] = found.flatMap(({ run, table }, r) =>
+      COMPONENTS.flatMap((component, c) => {
+        const values = columnOf(table, `${prefix}_${component}`);
+        if (!values) return [];
+        return [{
+          label: runs.length > 1 ? `${component}, ${run.name}` : component,
+          values: (r === 0 ? values : resampled(x, table, values)) as ArrayLike<number>,
+          colour: (dark: boolean) => componentColour(c, dark),
+          dashed: r > 0,
+        }];
+      }));
+    if (series.length > 0)
+      grid.append(chart({ title, xLabel: "time [ms]", yLabel: axisLabel(prefix.replace("_", " "), unit), x, series, player }));
+  }
+  return grid;
+}
+
+/** One tab a body. */
+export function motionCharts(runs: Run[], player: Player): HTMLElement | null {
+  const names = [...new Set(runs.flatMap((run) =>
+    [...run.history.keys()].filter((k) => k.startsWith("body-")).map((k) => k.slice(5))))];
+  if (names.length === 0) return null;
+  if (names.length === 1) return chartsOfBody(names[0]!, runs, player);
+  const holder = h("div", {});
+  const tabs = h("div", { class: "tabs", role: "group", "aria-label": "Body" });
+  const show = (name: string): void => {
+    holder.replaceChildren(chartsOfBody(name, runs, player));
+    for (const tab of tabs.children) tab.setAttribute("aria-pressed", String(tab.textContent === name));
+  };
+  for (const name of names) {
+    const tab = h("button", { type: "button" }, name);
+    tab.addEventListener("click", () => show(name));
+    tabs.append(tab);
+  }
+  show(names[0]!);
+  return h("div", {}, tabs, holder);
+}
+
+/** Probes, the ledger and other plain series, one chart a unit of each file. */
+export function seriesCharts(runs: Run[], player: Player, wanted: (name: string) => boolean): HTMLElement[] {
+  const names = [...new Set(runs.flatMap((run) => [...run.history.keys()].filter(wanted)))];
+  return names.flatMap((name) => {
+    const found = runs.flatMap((run) => (run.history.has(name) ? [{ run, table: run.history.get(name)! }] : []));
+    const first = found[0]!.table;
+    if (first.values[0]!.length < 2) return [];
+    const x = milliseconds(first);
+    const units = [...new Set(first.columns.slice(1).map((c) => c.unit))];
+    return units.map((unit) => {
+      const columns = first.columns.filter((c, n) => n > 0 && c.unit === unit);
+      const series = found.flatMap(({ run, table }, r) => columns.flatMap((column, c): Series[] => {
+        const values = columnOf(table, column.name);
+        if (!values) return [];
+        const label = words(column.name);
+        return [{
+          label: runs.length > 1 ? `${label}, ${run.name}` : label,
+          values: (r === 0 ? values : resampled(x, table, values)) as ArrayLike<number>,
+          colour: (dark) => bodyColour(c, dark),
+          dashed: r > 0,
+        }];
+      }));
+      const quantity = columns.length === 1 ? columns[0]!.name.replace(/_/g, " ") : "";
+      return chart({
+        title: words(name.replace(/^probe-/, "probe ")), xLabel: "time [ms]",
+        yLabel: quantity ? axisLabel(quantity, unit) : `[${unit}]`, x, series, player,
+      });
+    });
+  });
+}

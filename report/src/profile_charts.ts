@@ -1,0 +1,60 @@
+import { chart, axisLabel, type Series } from "./charts";
+import { viridis } from "./colour";
+import { columnOf, type Run, type Table } from "./data";
+import { fixed, words } from "./format";
+
+const MOST_TIMES = 5;
+
+interface Block {
+  time: number;
+  from: number;
+  to: number;
+}
+
+/** Rows that share a time. */
+function blocksOf(table: Table): Block[] {
+  const times = table.values[0]!;
+  const blocks: Block[] = [];
+  for (let n = 0; n < times.length; ++n) {
+    const last = blocks[blocks.length - 1];
+    if (last && last.time === times[n]) last.to = n + 1;
+    else blocks.push({ time: times[n]!, from: n, to: n + 1 });
+  }
+  return blocks;
+}
+
+function ofTime(colour: number, count: number): (dark: boolean) => string {
+  return (dark) => {
+    const low = dark ? 0.25 : 0;
+    const high = dark ? 1 : 0.8;
+    return `rgb(${viridis(low + ((high - low) * colour) / Math.max(count - 1, 1)).join(",")})`;
+  };
+}
+
+/** Jet profiles: every quantity of each recorded line against the position along it, at a few times. */
+export function profileCharts(runs: Run[]): HTMLElement[] {
+  const charts: HTMLElement[] = [];
+  for (const run of runs)
+    for (const [name, table] of run.history) {
+      if (!name.startsWith("line-")) continue;
+      const blocks = blocksOf(table);
+      const position = columnOf(table, "position");
+      if (!position || blocks.length === 0) continue;
+      const count = Math.min(MOST_TIMES, blocks.length);
+      const chosen = Array.from({ length: count }, (_, n) =>
+        blocks[Math.round(((n + (count < blocks.length ? 1 : 0)) * (blocks.length - 1)) / Math.max(count - (count < blocks.length ? 0 : 1), 1))]!);
+      const first = chosen[0]!;
+      const x = Float64Array.from(position.subarray(first.from, first.to), (v) => v * 1e3);
+      table.columns.forEach((column, c) => {
+        if (c === 0 || column.name === "position") return;
+        const series = chosen.map((block, n): Series => ({
+          label: `${fixed(block.time * 1e3, 1)} ms`,
+          values: table.values[c]!.subarray(block.from, block.to),
+          colour: ofTime(n, count),
+        }));
+        const title = `${words(column.name)} along ${name.slice(5)}${runs.length > 1 ? `, ${run.name}` : ""}`;
+        charts.push(chart({ title, xLabel: "position [mm]", yLabel: axisLabel(column.name.replace(/_/g, " "), column.unit), x, series }));
+      });
+    }
+  return charts;
+}

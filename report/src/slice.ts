@@ -1,0 +1,217 @@
+import { AIR_COLOURS, bodyColour, paintAir } from "./colour";
+import type { Raster, Run } from "./data";
+import { h } from "./dom";
+import { fixed, ticks } from "./format";
+import { frameIndex, placed, poseAt } from "./motion";
+import type { Player } from "./player";
+
+const AXES = ["x", "y", "z"];
+
+/** Fastest air in any frame of a raster, m/s: the top of the colour scale. */
+export function fastestAir(run: Run, raster: number): number {
+  return Math.max(1e-9, ...run.replay!.frames.map((f) => f.slices.get(raster)?.fullScale ?? 0));
+}
+
+/** A painted slice, ready to be drawn or used as a texture. */
+export class AirImage {
+  readonly canvas = document.createElement("canvas");
+  private readonly image: ImageData;
+  private shown = -1;
+
+  constructor(
+    private readonly run: Run,
+    readonly raster: number,
+    readonly top: number,
+  ) {
+    const [width, height] = run.replay!.rasters[raster]!.pixels;
+    this.canvas.width = width;
+    this.canvas.height = height;
+    this.image = new ImageData(width, height);
+  }
+
+  /** Paints the air at `time`; false when it is painted already. */
+  show(time: number): boolean {
+    const frames = this.run.replay!.frames;
+    const n = frameIndex(frames, time);
+    if (n === this.shown) return false;
+    this.shown = n;
+    const slice = frames[n]!.slices.get(this.raster);
+    if (slice) paintAir(slice.pixels, this.image.width, slice.fullScale / this.top, this.image.data, true);
+    else this.image.data.fill(0);
+    this.canvas.getContext("2d")!.putImageData(this.image, 0, 0);
+    return true;
+  }
+}
+
+interface Plane {
+  raster: Raster;
+  first: number;
+  second: number;
+}
+
+function planeOf(raster: Raster): Plane {
+  const [first, second] = [0, 1, 2].filter((d) => d !== raster.axis) as [number, number];
+  return { raster, first, second };
+}
+
+/** Draws a body's shadow on the plane: its triangles, lit, the nearer over the farther. */
+function drawBody(
+  c: CanvasRenderingContext2D, run: Run, b: number, time: number, plane: Plane, colour: string,
+  toX: (v: number) => number, toY: (v: number) => number,
+): void {
+  const surface = run.replay!.bodies[b]!;
+  const pose = poseAt(run.replay!, b, time);
+  if (!pose) return;
+  const v = placed(surface, pose);
+  const { first, second, raster } = plane;
+  const towards = raster.axis === 1 ? -1 : 1; // the viewer of (x, z) stands at negative y
+  const faces: { depth: number; light: number; points: [number, number][] }[] = [];
+  for (let t = 0; t < surface.triangles.length; t += 3) {
+    const corner = [0, 1, 2].map((n) => 3 * surface.triangles[t + n]!);
+    const at = (n: number, d: number): number => v[corner[n]! + d]!;
+    const e1 = [0, 1, 2].map((d) => at(1, d) - at(0, d));
+    const e2 = [0, 1, 2].map((d) => at(2, d) - at(0, d));
+    const normal = [
+      e1[1]! * e2[2]! - e1[2]! * e2[1]!, e1[2]! * e2[0]! - e1[0]! * e2[2]!, e1[0]! * e2[1]! - e1[1]! * e2[0]!,
+    ];
+    const size = Math.hypot(...normal) || 1;
+    if (normal[raster.axis]! * towards <= 0) continue;
+    faces.push({
+      depth: towards * (at(0, raster.axis) + at(1, raster.axis) + at(2, raster.axis)),
+      light: (0.35 * normal[first]! + 0.6 * normal[second]! + 0.7 * towards * normal[raster.axis]!) / size,
+      points: [0, 1, 2].map((n) => [toX(at(n, first)), toY(at(n, second))]),
+    });
+  }
+  faces.sort((a, f) => a.depth - f.depth);
+  const trace = (points: [number, number][]): void => {
+    c.beginPath();
+    points.forEach(([x, y], n) => (n ? c.lineTo(x, y) : c.moveTo(x, y)));
+    c.closePath();
+  };
+  c.lineJoin = "round";
+  c.lineWidth = 3.5;
+  c.strokeStyle = colour;
+  for (const f of faces) {
+    trace(f.points);
+    c.stroke();
+  }
+  c.lineWidth = 0.6;
+  for (const f of faces) {
+    const grey = Math.round(120 + 100 * Math.max(0, f.light));
+    c.fillStyle = c.strokeStyle = `rgb(${grey},${grey - 6},${grey - 14})`;
+    trace(f.points);
+    c.fill();
+    c.stroke();
+  }
+}
+
+/** The air in one plane with the bodies in it. */
+export class SliceView {
+  readonly canvas = h("canvas", { class: "stage", role: "img" });
+  readonly legend = h("div", { class: "legend" });
+  private image!: AirImage;
+  private plane!: Plane;
+  private run!: Run;
+
+  constructor(
+    private readonly runs: Run[],
+    private readonly player: Player,
+  ) {
+    player.onChange(() => this.draw());
+    new ResizeObserver(() => this.draw()).observe(this.canvas);
+  }
+
+  select(run: Run, raster: number): void {
+    this.run = run;
+    this.image = new AirImage(run, raster, fastestAir(run, raster));
+    this.plane = planeOf(run.replay!.rasters[raster]!);
+    this.canvas.style.aspectRatio = String(this.aspect());
+    const bar = h("canvas", { width: 256, height: 1, "aria-hidden": "true" });
+    const pixels = new ImageData(new Uint8ClampedArray(AIR_COLOURS), 256, 1);
+    bar.getContext("2d")!.putImageData(pixels, 0, 0);
+    this.legend.replaceChildren(
+      h("span", {}, "Air speed 0"), bar, h("span", {}, `${fixed(this.image.top, 0)} m/s`));
+    this.draw();
+  }
+
+  private aspect(): number {
+    const { lower, upper } = this.plane.raster;
+    return Math.min(Math.max((upper[0] - lower[0]) / (upper[1] - lower[1]), 0.75), 2.4);
+  }
+
+  draw(): void {
+    const { canvas, player } = this;
+    const ratio = window.devicePixelRatio || 1;
+    const [width, height] = [canvas.clientWidth, canvas.clientHeight];
+    if (!this.image || width === 0 || height === 0) return;
+    if (canvas.width !== Math.round(width * ratio) || canvas.height !== Math.round(height * ratio)) {
+      canvas.width = Math.round(width * ratio);
+      canvas.height = Math.round(height * ratio);
+    }
+    const c = canvas.getContext("2d")!;
+    c.setTransform(ratio, 0, 0, ratio, 0, 0);
+    c.clearRect(0, 0, width, height);
+
+    const { lower, upper, axis } = this.plane.raster;
+    const margin = { left: 46, right: 12, top: 12, bottom: 34 };
+    const scale = Math.min(
+      (width - margin.left - margin.right) / (upper[0] - lower[0]),
+      (height - margin.top - margin.bottom) / (upper[1] - lower[1]));
+    const w = (upper[0] - lower[0]) * scale;
+    const ht = (upper[1] - lower[1]) * scale;
+    const left = margin.left + (width - margin.left - margin.right - w) / 2;
+    const top = margin.top + (height - margin.top - margin.bottom - ht) / 2;
+    const toX = (v: number): number => left + (v - lower[0]) * scale;
+    const toY = (v: number): number => top + ht - (v - lower[1]) * scale;
+
+    c.strokeStyle = "rgba(255,255,255,0.10)";
+    c.fillStyle = "rgba(226,234,245,0.75)";
+    c.font = "11px ui-sans-serif, system-ui, sans-serif";
+    c.lineWidth = 1;
+    c.textAlign = "center";
+    for (const t of ticks(lower[0] * 1e3, upper[0] * 1e3, w / 70)) {
+      c.beginPath();
+      c.moveTo(toX(t / 1e3), top);
+      c.lineTo(toX(t / 1e3), top + ht);
+      c.stroke();
+      c.fillText(fixed(t, 0), toX(t / 1e3), top + ht + 15);
+    }
+    c.textAlign = "right";
+    for (const t of ticks(lower[1] * 1e3, upper[1] * 1e3, ht / 55)) {
+      c.beginPath();
+      c.moveTo(left, toY(t / 1e3));
+      c.lineTo(left + w, toY(t / 1e3));
+      c.stroke();
+      c.fillText(fixed(t, 0), left - 6, toY(t / 1e3) + 4);
+    }
+    c.fillText(`${AXES[this.plane.first]} [mm]`, left + w, top + ht + 29);
+    c.textAlign = "left";
+    c.fillText(`${AXES[this.plane.second]} [mm]`, left + 6, top + 14);
+
+    this.image.show(player.time);
+    c.imageSmoothingQuality = "high";
+    c.drawImage(this.image.canvas, left, top, w, ht);
+    c.save();
+    c.beginPath();
+    c.rect(left, top, w, ht);
+    c.clip();
+    let colour = 0;
+    for (const run of this.runs) {
+      c.globalAlpha = run === this.run ? 1 : 0.45;
+      run.replay?.bodies.forEach((_, b) =>
+        drawBody(c, run, b, player.time, this.plane, bodyColour(colour++, true), toX, toY));
+    }
+    c.restore();
+    c.strokeStyle = "rgba(255,255,255,0.25)";
+    c.strokeRect(left, top, w, ht);
+    if (!player.playing)
+      canvas.setAttribute("aria-label", `Air speed in the plane ${AXES[axis]} = ` +
+        `${fixed(this.plane.raster.position * 1e3, 1)} mm at ${fixed(player.time * 1e3, 2)} ms, up to ` +
+        `${fixed(this.airNow(), 1)} m/s, with the bodies drawn to scale.`);
+  }
+
+  private airNow(): number {
+    const frames = this.run.replay!.frames;
+    return frames[frameIndex(frames, this.player.time)]!.slices.get(this.image.raster)?.fullScale ?? 0;
+  }
+}

@@ -1,0 +1,156 @@
+import { bodiesOf, type Json, type JsonObject, type Run } from "./data";
+import { h } from "./dom";
+import { duration, fixed, short, thousands, words } from "./format";
+
+const isNumber = (v: Json | undefined): v is number => typeof v === "number";
+
+/** Keys of result.json that have a place of their own on the page. */
+const OWN_PLACE = new Set(["title", "outcome", "bodies", "ledger", "operators", "assumptions", "expectations"]);
+
+interface Fact {
+  label: string;
+  text: string;
+  unit: string;
+  pointer: string;
+}
+
+function factsOfBody(body: JsonObject, pointer: string): Fact[] {
+  const facts: Fact[] = [];
+  const add = (key: string, label: string, unit: string, text: (v: number) => string): void => {
+    const value = body[key];
+    if (isNumber(value)) facts.push({ label, unit, text: text(value), pointer: `${pointer}/${key}` });
+  };
+  const signed = (v: number, digits: number): string => (v > 0 ? "+" : "") + fixed(v, digits);
+  add("clearance_at_splitter_m", "over the plate's edge", "mm", (v) => signed(v * 1e3, 1));
+  add("velocity_margin_z_m_s", "margin in vertical velocity", "m/s", (v) => signed(v, 2));
+  add("velocity_change_z_m_s", "vertical velocity gained", "m/s", (v) => signed(v, 2));
+  add("impulse_z_N_s", "vertical impulse", "mN\u00b7s", (v) => fixed(v * 1e3, 2));
+  add("drag_coefficient", "drag coefficient", "", (v) => fixed(v, 3));
+  add("mass_kg", "mass", "g", (v) => fixed(v * 1e3, 2));
+  return facts;
+}
+
+/** One card a body: its outcome and the numbers behind it. */
+export function bodyCards(runs: Run[]): HTMLElement | null {
+  const cards = h("div", { class: "cards" });
+  let n = 0;
+  runs.forEach((run, r) => bodiesOf(run).forEach((body, b) => {
+    const outcome = body["outcome"];
+    const ejected = outcome === "ejected";
+    const list = h("dl", {});
+    for (const f of factsOfBody(body, `/bodies/${b}`))
+      list.append(h("div", {},
+        h("dd", { "data-run": r, "data-pointer": f.pointer }, f.text, f.unit ? h("span", { class: "unit" }, ` ${f.unit}`) : null),
+        h("dt", {}, f.label)));
+    cards.append(h("article", { class: "card" },
+      h("header", {},
+        h("h3", {}, h("span", { class: r > 0 ? "swatch dashed" : "swatch", "data-body": n++ }), String(body["name"] ?? `body ${b}`),
+          runs.length > 1 ? h("span", { class: "of-run" }, ` ${run.name}`) : null),
+        typeof outcome === "string"
+          ? h("p", { class: ejected ? "outcome ejected" : "outcome kept" }, h("span", { "aria-hidden": "true" }, ejected ? "\u2197 " : "\u2192 "), outcome)
+          : null),
+      list));
+  }));
+  return cards.children.length > 0 ? cards : null;
+}
+
+function table(head: string[], rows: (string | Node)[][], numeric: number[] = []): HTMLElement {
+  const kind = (n: number): string | undefined => (numeric.includes(n) ? "number" : undefined);
+  return h("div", { class: "table-holder" }, h("table", {},
+    h("thead", {}, h("tr", {}, ...head.map((text, n) => h("th", { scope: "col", class: kind(n) }, text)))),
+    h("tbody", {}, ...rows.map((row) => h("tr", {}, ...row.map((cell, n) =>
+      n === 0 ? h("th", { scope: "row" }, cell) : h("td", { class: kind(n) }, cell)))))));
+}
+
+/** Key figures of the computation. */
+export function costTable(runs: Run[]): HTMLElement {
+  const figures: [key: string, label: string, text: (v: number) => string][] = [
+    ["cells", "Cells", thousands],
+    ["steps", "Steps", thousands],
+    ["simulated_time_s", "Simulated time", (v) => `${short(v * 1e3, 4)} ms`],
+    ["wall_time_s", "Wall time", duration],
+    ["threads", "Threads", String],
+    ["cell_steps_per_s", "Cell-steps a second", (v) => `${short(v / 1e6, 3)} million`],
+    ["max_courant", "Largest Courant number", (v) => fixed(v, 2)],
+  ];
+  const known = new Set(figures.map(([key]) => key));
+  const others = [...new Set(runs.flatMap((run) => Object.entries(run.result ?? {})
+    .filter(([key, v]) => !OWN_PLACE.has(key) && !known.has(key) && (isNumber(v) || typeof v === "string")).map(([key]) => key)))];
+  const rows = [
+    ...figures,
+    ...others.map((key): [string, string, (v: number) => string] => [key, words(key), (v) => (isNumber(v) ? short(v, 4) : String(v))]),
+  ].filter(([key]) => runs.some((run) => run.result?.[key] !== undefined))
+    .map(([key, label, text]) => [label, ...runs.map((run, r) => {
+      const value = run.result?.[key];
+      return h("span", { "data-run": r, "data-pointer": `/${key}` }, value === undefined || value === null ? "\u2013" : text(value as number));
+    })]);
+  return table(["Run", ...runs.map((run) => run.name)], rows, runs.map((_, n) => n + 1));
+}
+
+/** Conservation: how well the books close. */
+export function ledgerTable(runs: Run[]): HTMLElement | null {
+  const keys = [...new Set(runs.flatMap((run) => Object.keys((run.result?.["ledger"] ?? {}) as JsonObject)))];
+  if (keys.length === 0) return null;
+  const rows = keys.map((key) => [words(key.replace(/_relative_residual$/, ", relative residual")), ...runs.map((run, r) => {
+    const value = ((run.result?.["ledger"] ?? {}) as JsonObject)[key];
+    return h("span", { "data-run": r, "data-pointer": `/ledger/${key}` }, isNumber(value) ? short(value, 2) : "\u2013");
+  })]);
+  return table(["Ledger", ...runs.map((run) => run.name)], rows, runs.map((_, n) => n + 1));
+}
+
+/** Operator times with bars. */
+export function operatorTable(run: Run): HTMLElement | null {
+  const operators = run.result?.["operators"];
+  if (!Array.isArray(operators) || operators.length === 0) return null;
+  const list = operators as JsonObject[];
+  const total = list.reduce((sum, o) => sum + Number(o["seconds"]), 0) || 1;
+  const rows = list.map((o) => {
+    const share = Number(o["seconds"]) / total;
+    return [
+      h("span", {}, String(o["name"]), h("small", {}, String(o["equation"] ?? ""))),
+      h("span", { class: "bar", style: `--share:${share.toFixed(4)}` }, `${fixed(share * 100, 1)} %`),
+      `${short(Number(o["seconds"]))} s`,
+      thousands(Number(o["calls"])),
+    ];
+  });
+  return table(["Operator", "Share", "Time", "Calls"], rows, [2, 3]);
+}
+
+export function expectationTable(run: Run): HTMLElement | null {
+  const list = run.result?.["expectations"];
+  if (!Array.isArray(list) || list.length === 0) return null;
+  const cell = (v: Json | undefined): string => (isNumber(v) ? short(v, 4) : String(v ?? "\u2013"));
+  return table(["Quantity", "Computed", "Reference", "Error", "Met", "Source"], (list as JsonObject[]).map((e) => [
+    h("code", {}, String(e["quantity"])), cell(e["computed"]), cell(e["reference"]), cell(e["error"]),
+    h("span", { class: e["pass"] ? "met" : "missed" }, e["pass"] ? "\u2713 yes" : "\u2717 no"), String(e["source"] ?? ""),
+  ]), [1, 2, 3]);
+}
+
+/** What the run takes for granted. */
+export function assumptionList(run: Run): HTMLElement | null {
+  const list = run.result?.["assumptions"];
+  if (!Array.isArray(list) || list.length === 0) return null;
+  return h("ul", { class: "assumptions" }, ...(list as JsonObject[]).map((a) => h("li", {},
+    h("p", { class: "what" }, `${a["what"]}: `, h("strong", {}, String(a["value"]))),
+    h("p", {}, String(a["reason"] ?? "")),
+    a["key"] ? h("p", { class: "key-name" }, "Change it with ", h("code", {}, String(a["key"]))) : null)));
+}
+
+function leaves(value: Json, path: string): [path: string, value: Json][] {
+  if (value === null || typeof value !== "object") return [[path, value]];
+  return Object.entries(value).flatMap(([key, child]) => leaves(child as Json, `${path}/${key}`));
+}
+
+/** Where the run comes from. */
+export function provenanceTable(runs: Run[]): HTMLElement {
+  const all = runs.map((run) => new Map(leaves(run.manifest as Json, "")));
+  const keys = [...new Set(all.flatMap((m) => [...m.keys()]))];
+  return table(["Provenance", ...runs.map((run) => run.name)], keys.map((key) =>
+    [words(key.slice(1).replace(/\//g, ", ")), ...all.map((m) => h("span", { class: "long" }, String(m.get(key) ?? "\u2013")))]));
+}
+
+/** Every number of result.json, in full. */
+export function resultTable(run: Run, r: number): HTMLElement {
+  return table(["Key of result.json", "Value"], leaves(run.result as Json, "").map(([path, value]) =>
+    [h("code", {}, path), h("span", { "data-exact": path, "data-run": r }, String(value))]), [1]);
+}
