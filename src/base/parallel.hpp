@@ -10,6 +10,10 @@
 /// no virtual call, no container inside. Loops run over planes of constant k in parallel and over i in SIMD.
 namespace ejecta {
 
+/// Put before a kernel's call operator and the functions it calls: a loop is only vectorised when all of its
+/// body is inlined, which the compiler declines for large kernels.
+#define EJECTA_KERNEL [[gnu::always_inline]] inline
+
 /// Half-open index box [i0,i1) x [j0,j1) x [k0,k1).
 struct Range3 {
   int i0 = 0, i1 = 0, j0 = 0, j1 = 0, k0 = 0, k1 = 0;

@@ -1,0 +1,186 @@
+#include "flow/godunov/boundary.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/parallel.hpp"
+
+namespace ejecta::godunov {
+namespace {
+
+/// Relaxation of a transmissive face to the far pressure, of c/L (Poinsot & Lele 1992; Rudy & Strikwerda
+/// 1980)
+constexpr double kRelaxation = 0.27;
+
+/// The axes across axis d, ascending.
+struct Across {
+  int a, b;
+};
+Across across(int d) { return d == 0 ? Across{1, 2} : d == 1 ? Across{0, 2} : Across{0, 1}; }
+
+std::ptrdiff_t stride(const Block& w, int d) {
+  const auto v = w[0].view();
+  return d == 0 ? 1 : d == 1 ? v.sy : v.sz;
+}
+
+void store(Block& w, int d, Real sign, std::ptrdiff_t n, const Primitive& g) {
+  const Across t = across(d);
+  const auto at = [&](int c) -> Real& { return w[static_cast<std::size_t>(c)].view().origin[n]; };
+  at(kRho) = g.rho;
+  at(kU + d) = sign * g.un;
+  at(kU + t.a) = g.ut;
+  at(kU + t.b) = g.us;
+  at(kP) = g.p;
+  at(kK) = g.k;
+  at(kE) = g.e;
+}
+
+Primitive in_face_axes(const GasState& s, int d, Real sign, const GasConstants& gas) {
+  const Across t = across(d);
+  return {Real(s.density),
+          sign * Real(s.velocity[d]),
+          Real(s.velocity[t.a]),
+          Real(s.velocity[t.b]),
+          Real(s.pressure - double(gas.reference_pressure)),
+          Real(s.k),
+          Real(s.e)};
+}
+
+}  // namespace
+
+Boundaries::Boundaries(const Grid& grid, const GasConstants& gas) : grid_(grid), gas_(gas) {
+  for (int f = 0; f < 6; ++f) {
+    const Across t = across(f / 2);
+    const auto cells = static_cast<std::size_t>(grid.n(t.a)) * static_cast<std::size_t>(grid.n(t.b));
+    face_[static_cast<std::size_t>(f)].handle.assign(cells, 0);
+    face_[static_cast<std::size_t>(f)].remembered.assign(cells, Real(0));
+  }
+  conditions_.push_back(Condition{});  // 0: symmetry everywhere until set
+}
+
+int Boundaries::set_face(int face, const Condition& condition) {
+  const auto handle = static_cast<std::uint8_t>(conditions_.size());
+  conditions_.push_back(condition);
+  Face& f = face_[static_cast<std::size_t>(face)];
+  std::fill(f.handle.begin(), f.handle.end(), handle);
+  std::fill(f.remembered.begin(), f.remembered.end(),
+            Real(condition.state.pressure - double(gas_.reference_pressure)));
+  return handle;
+}
+
+int Boundaries::add_disc(int face, const Vec3& centre, double radius, const Condition& condition) {
+  const auto handle = static_cast<std::uint8_t>(conditions_.size());
+  conditions_.push_back(condition);
+  const Across t = across(face / 2);
+  Face& f = face_[static_cast<std::size_t>(face)];
+  for (int b = 0; b < grid_.n(t.b); ++b)
+    for (int a = 0; a < grid_.n(t.a); ++a) {
+      const double da = grid_.axis(t.a).centre[static_cast<std::size_t>(a)] - centre[t.a];
+      const double db = grid_.axis(t.b).centre[static_cast<std::size_t>(b)] - centre[t.b];
+      const double across_y = grid_.axisymmetric() ? 0.0 : (t.a == 1 ? da : db);
+      const double across_x = t.a == 1 ? db : da;
+      const bool y_is_across = t.a == 1 || t.b == 1;
+      const double square = y_is_across ? across_x * across_x + across_y * across_y : da * da + db * db;
+      if (square < radius * radius) f.handle[static_cast<std::size_t>(a + b * grid_.n(t.a))] = handle;
+    }
+  return handle;
+}
+
+int Boundaries::cells_of(int face, int handle) const {
+  const auto& cells = face_[static_cast<std::size_t>(face)].handle;
+  return static_cast<int>(std::count(cells.begin(), cells.end(), static_cast<std::uint8_t>(handle)));
+}
+
+template <class Visit>
+void Boundaries::for_each_face_cell(int face, bool ghosts, const Visit& visit) const {
+  const int d = face / 2;
+  const Across t = across(d);
+  // Ghosts of the axes filled before are part of the face, so that edges and corners get values.
+  const int ga = ghosts && t.a < d ? kGhosts : 0, gb = ghosts && t.b < d ? kGhosts : 0;
+  const int na = grid_.n(t.a), nb = grid_.n(t.b);
+  for_each_index(nb + 2 * gb, [&](int row) {
+    const int b = row - gb, inside_b = std::clamp(b, 0, nb - 1);
+    for (int a = -ga; a < na + ga; ++a)
+      visit(a, b, static_cast<std::size_t>(std::clamp(a, 0, na - 1) + inside_b * na));
+  });
+}
+
+Primitive Boundaries::load(const Block& w, int face, std::ptrdiff_t n) const {
+  const int d = face / 2;
+  const Across t = across(d);
+  const Real sign = face % 2 ? Real(-1) : Real(1);
+  const auto at = [&](int c) { return w[static_cast<std::size_t>(c)].view().origin[n]; };
+  return {at(kRho), sign * at(kU + d), at(kU + t.a), at(kU + t.b), at(kP), at(kK), at(kE)};
+}
+
+void Boundaries::listen(const Block& w, double dt) {
+  for (int face = 0; face < 6; ++face) {
+    const int d = face / 2;
+    Face& f = face_[static_cast<std::size_t>(face)];
+    const Across t = across(d);
+    const int last = face % 2 ? grid_.n(d) - 1 : 0;
+    const double width = grid_.axis(d).width[static_cast<std::size_t>(last)], length = grid_.axis(d).length();
+    const std::ptrdiff_t s = stride(w, d), sa = stride(w, t.a), sb = stride(w, t.b);
+    for_each_face_cell(face, false, [&](int a, int b, std::size_t cell) {
+      const Condition& c = conditions_[f.handle[cell]];
+      if (c.type != BoundaryType::wave_transmissive) return;
+      const Primitive inside = load(w, face, last * s + a * sa + b * sb);
+      const double sound = std::sqrt(double(gas_.sound_speed_squared(inside.rho, inside.p)));
+      const double speed = std::max(0.0, sound - double(inside.un));
+      const double far = c.state.pressure - double(gas_.reference_pressure);
+      double p = double(f.remembered[cell]);
+      p = double(inside.p) + (p - double(inside.p)) * std::exp(-speed * dt / width);
+      p += (far - p) * (1.0 - std::exp(-kRelaxation * sound * dt / length));
+      f.remembered[cell] = Real(p);
+    });
+  }
+}
+
+void Boundaries::fill_face(Block& w, int face) const {
+  const int d = face / 2, n = grid_.n(d);
+  const Across t = across(d);
+  const Real sign = face % 2 ? Real(-1) : Real(1);
+  const int first = face % 2 ? n - 1 : 0, inward = face % 2 ? -1 : 1;
+  const Face& f = face_[static_cast<std::size_t>(face)];
+  const std::ptrdiff_t s = stride(w, d), sa = stride(w, t.a), sb = stride(w, t.b);
+  for_each_face_cell(face, true, [&](int a, int b, std::size_t cell) {
+    const Condition& c = conditions_[f.handle[cell]];
+    const std::ptrdiff_t at = first * s + a * sa + b * sb, step = inward * s;
+    const Primitive one = load(w, face, at), two = n > 1 ? load(w, face, at + step) : one;
+    GhostStates g = {one, one};  // an axis of one cell carries no flux and no gradient
+    if (n > 1) g = ghost_states(c, gas_, one, two, in_face_axes(c.state, d, sign, gas_), f.remembered[cell]);
+    store(w, d, sign, at - step, g.first);
+    store(w, d, sign, at - 2 * step, g.second);
+  });
+}
+
+void Boundaries::fill_periodic(Block& w, int axis) const {
+  const Across t = across(axis);
+  const int n = grid_.n(axis);
+  const std::ptrdiff_t s = stride(w, axis), sa = stride(w, t.a), sb = stride(w, t.b);
+  for_each_face_cell(2 * axis, true, [&](int a, int b, std::size_t) {
+    for (Field& field : w) {
+      Real* row = field.view().origin + a * sa + b * sb;
+      for (int g = 1; g <= kGhosts; ++g) {
+        row[-g * s] = row[(n - g) * s];
+        row[(n - 1 + g) * s] = row[(g - 1) * s];
+      }
+    }
+  });
+}
+
+void Boundaries::fill(Block& w) const {
+  for (int axis = 0; axis < 3; ++axis) {
+    if (axis == 1 && !grid_.active(1)) continue;  // a flow in the x-z plane reads nothing along y
+    const Face& low = face_[static_cast<std::size_t>(2 * axis)];
+    const bool periodic = conditions_[low.handle[0]].type == BoundaryType::periodic;
+    if (periodic && grid_.n(axis) >= kGhosts) {
+      fill_periodic(w, axis);
+    } else {
+      fill_face(w, 2 * axis);
+      fill_face(w, 2 * axis + 1);
+    }
+  }
+}
+
+}  // namespace ejecta::godunov

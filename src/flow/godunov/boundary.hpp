@@ -1,0 +1,84 @@
+#pragma once
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "case/case.hpp"
+#include "flow/gas.hpp"
+#include "flow/godunov/state.hpp"
+#include "grid/grid.hpp"
+
+namespace ejecta::godunov {
+
+/// State of a gas in SI units, pressure absolute.
+struct GasState {
+  double density = 1.0;
+  Vec3 velocity{0, 0, 0};
+  double pressure = 0.0;
+  double k = 0.0;  ///< m2/s2
+  double e = 0.0;  ///< epsilon, m2/s3, or omega, 1/s
+};
+
+/// What acts on a face of the box or on a patch of it. Its owner may change the values between steps (a
+/// valve).
+struct Condition {
+  BoundaryType type = BoundaryType::symmetry;
+  GasState state;                  ///< outside: the gas that flows in, the pressure kept, the wall's velocity
+  double total_pressure = 0.0;     ///< Pa absolute
+  double total_temperature = 0.0;  ///< K
+};
+
+/// The two states beyond a face; velocities along the inward normal in `un`, along the remaining axes in
+/// ascending order in `ut` and `us`; p is the difference to the reference pressure.
+struct GhostStates {
+  Primitive first, second;
+};
+
+/// Ghosts of `condition` from the two cells inside. `waves` is the pressure a transmissive face remembers
+/// (difference to the reference); `outside` is the condition's state in the face's axes.
+GhostStates ghost_states(const Condition& condition, const GasConstants& gas, const Primitive& first,
+                         const Primitive& second, const Primitive& outside, Real remembered);
+
+/// A gas of total pressure p0 (absolute) and temperature T0 that enters along +n from a convergent nozzle:
+/// meets the invariant u - 2c/(gamma-1) that arrives from inside, or is sonic when that asks for more.
+/// Returns zero velocity when the pressure inside is higher (the valve holds the air back).
+Primitive inlet_total_pressure(const GasConstants& gas, double total_pressure, double total_temperature,
+                               const Primitive& inside);
+
+/// The six faces of a grid with their patches: fills two ghost layers of the primitive variables.
+class Boundaries {
+ public:
+  Boundaries(const Grid& grid, const GasConstants& gas);
+
+  /// Face 0..5 = x_min, x_max, y_min, ... gets `condition`; returns its handle.
+  int set_face(int face, const Condition& condition);
+  /// A disc of `radius` around `centre` on a face; returns its handle. Cells belong to it by their centre.
+  int add_disc(int face, const Vec3& centre, double radius, const Condition& condition);
+  Condition& condition(int handle) { return conditions_[static_cast<std::size_t>(handle)]; }
+  const Condition& condition(int handle) const { return conditions_[static_cast<std::size_t>(handle)]; }
+  /// Cells of a face that belong to a handle.
+  int cells_of(int face, int handle) const;
+
+  /// Lets the transmissive faces hear the pressure inside for a step of dt: the pressure outside follows the
+  /// wave that leaves with u + c, and relaxes to the far pressure over the length of the box (Poinsot & Lele
+  /// 1992).
+  void listen(const Block& w, double dt);
+  void fill(Block& w) const;
+
+ private:
+  struct Face {
+    std::vector<std::uint8_t> handle;  ///< per cell of the face
+    std::vector<Real> remembered;      ///< pressure outside transmissive cells
+  };
+  template <class Visit>
+  void for_each_face_cell(int face, bool ghosts, const Visit& visit) const;
+  Primitive load(const Block& w, int face, std::ptrdiff_t n) const;
+  void fill_face(Block& w, int face) const;
+  void fill_periodic(Block& w, int axis) const;
+  const Grid& grid_;
+  GasConstants gas_;
+  std::array<Face, 6> face_;
+  std::vector<Condition> conditions_;
+};
+
+}  // namespace ejecta::godunov

@@ -1,0 +1,63 @@
+#pragma once
+#include <memory>
+
+#include "flow/godunov/boundary.hpp"
+#include "flow/godunov/flux_kernel.hpp"
+#include "flow/godunov/geometry.hpp"
+
+namespace ejecta::godunov {
+
+/// What the compressible solver is asked to solve.
+struct Options {
+  Gas gas;
+  double reference_pressure = 0.0;  ///< Pa, that of the gas at rest (see state.hpp)
+  double viscosity = 0.0;           ///< Pa s, dynamic; 0: inviscid
+  double prandtl = 0.71, prandtl_turbulent = 0.9;
+  TurbulenceModel turbulence = TurbulenceModel::laminar;
+  bool round_jet_correction = true, compressibility_correction = true;
+  int stages = 2;  ///< 2: Heun's method, 3: third order (both strong-stability preserving)
+};
+
+/// Compressible flow of an ideal gas, explicit in time: finite volumes, MUSCL, HLLC with a cure for the
+/// carbuncle, SSP Runge-Kutta (Gottlieb, Shu & Tadmor 2001), on Cartesian and axisymmetric grids.
+class Solver {
+ public:
+  Solver(const Grid& grid, const Options& options);
+
+  Boundaries& boundaries() { return boundaries_; }
+  const Grid& grid() const { return grid_; }
+  const Options& options() const { return options_; }
+
+  void set(int i, int j, int k, const GasState& state);
+  GasState at(int i, int j, int k) const;
+
+  /// Largest stable step: courant / max over cells of sum over axes of (|u| + c)/h + 2 nu/h^2. Throws
+  /// DivergedError with place and state when a cell holds no number.
+  double stable_dt(double courant) const;
+  /// One step of all stages. Allocates nothing.
+  void advance(double dt);
+
+  /// Integral of a conserved component over the box (axisymmetric: the full circle).
+  double total(Component c) const;
+  /// Primitive variables with ghosts, pressure relative to the reference.
+  const Block& primitive() const { return w_; }
+  const Field& eddy_viscosity() const { return eddy_viscosity_; }  ///< Pa s
+  /// Raw fields of a checkpoint: conserved and primitive components and the boundaries' memory.
+  Block& conserved() { return u_; }
+
+ private:
+  template <class P>
+  void run_stages(double dt);
+  template <class P>
+  void fluxes();
+  const Grid& grid_;
+  Options options_;
+  GasConstants gas_;
+  Diffusion diffusion_;
+  Geometry geometry_;
+  Boundaries boundaries_;
+  Block u_, start_, w_, next_, fx_, fy_, fz_;
+  Field eddy_viscosity_;
+};
+
+}  // namespace ejecta::godunov
