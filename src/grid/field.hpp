@@ -22,11 +22,7 @@ struct View {
   std::ptrdiff_t sy = 0, sz = 0;
   T& operator()(int i, int j, int k) const { return origin[i + j * sy + k * sz]; }
   T* row(int j, int k) const { return origin + j * sy + k * sz; }
-  operator View<const T>() const
-    requires(!std::is_const_v<T>)
-  {
-    return {origin, sy, sz};
-  }
+  operator View<const T>() const requires(!std::is_const_v<T>) { return {origin, sy, sz}; }
 };
 
 /// One value a cell of an nx x ny x nz grid plus ghosts, rows aligned to 64 bytes.

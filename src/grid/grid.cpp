@@ -45,6 +45,7 @@ Grid::Lines Grid::make_lines(const Axis& a, bool radial, bool collapsed) {
     l.centre.push_back(static_cast<Real>(centre));
     l.face.push_back(static_cast<Real>(lo));
     l.volume.push_back(static_cast<Real>(volume));
+    l.inv_width.push_back(static_cast<Real>(1.0 / width));
     l.inv_volume.push_back(static_cast<Real>(1.0 / volume));
     l.area.push_back(static_cast<Real>(radial ? std::abs(lo) : 1.0));
     if (m == 0) previous_centre = centre - width, previous_width = width;
@@ -57,7 +58,8 @@ Grid::Lines Grid::make_lines(const Axis& a, bool radial, bool collapsed) {
     const std::size_t lo = static_cast<std::size_t>(std::max(m - 1, 0));
     const std::size_t hi = static_cast<std::size_t>(std::min(m + 1, total - 1));
     const double span = 0.5 * (face[hi] + face[hi + 1] - face[lo] - face[lo + 1]);
-    l.inv_span.push_back(static_cast<Real>(1.0 / span));
+    l.inv_span.push_back(a.n == 1 ? Real(0)
+                                  : static_cast<Real>(1.0 / span));  // nothing varies along one cell
   }
   if (radial && a.face.front() < 1e-12 * a.length()) l.area[static_cast<std::size_t>(g)] = 0;
   return l;
@@ -65,9 +67,10 @@ Grid::Lines Grid::make_lines(const Axis& a, bool radial, bool collapsed) {
 
 Metrics Grid::metrics(int d) const {
   const Lines& l = lines_[static_cast<std::size_t>(d)];
-  return {l.width.data() + kGhosts,        l.centre.data() + kGhosts,   l.face.data() + kGhosts,
-          l.volume.data() + kGhosts,       l.area.data() + kGhosts,     l.inv_volume.data() + kGhosts,
-          l.inv_distance.data() + kGhosts, l.inv_span.data() + kGhosts, l.weight.data() + kGhosts};
+  return {l.width.data() + kGhosts,     l.centre.data() + kGhosts,       l.face.data() + kGhosts,
+          l.volume.data() + kGhosts,    l.area.data() + kGhosts,         l.inv_volume.data() + kGhosts,
+          l.inv_width.data() + kGhosts, l.inv_distance.data() + kGhosts, l.inv_span.data() + kGhosts,
+          l.weight.data() + kGhosts};
 }
 
 double Grid::volume(int i, int j, int k) const {

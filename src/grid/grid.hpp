@@ -22,6 +22,7 @@ struct Metrics {
   const Real* volume;
   const Real* area;  ///< of the lower face of cell i
   const Real* inv_volume;
+  const Real* inv_width;     ///< 1/m
   const Real* inv_distance;  ///< 1 / (centre i - centre i-1), of the lower face of cell i, 1/m
   const Real* inv_span;      ///< 1 / (centre i+1 - centre i-1), 1/m
   const Real* weight;        ///< linear weight of cell i-1 in the value on the lower face of cell i
@@ -52,7 +53,8 @@ class Grid {
 
  private:
   struct Lines {  // with ghosts, entry g is index g - kGhosts
-    std::vector<Real> width, centre, face, volume, area, inv_volume, inv_distance, inv_span, weight;
+    std::vector<Real> width, centre, face, volume, area, inv_volume, inv_width, inv_distance, inv_span,
+        weight;
   };
   static Lines make_lines(const Axis& axis, bool radial, bool collapsed);
   std::array<Axis, 3> axis_;

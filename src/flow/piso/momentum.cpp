@@ -1,5 +1,8 @@
 #include "flow/piso/momentum.hpp"
 
+#include <algorithm>
+#include <type_traits>
+
 #include "flow/stencil.hpp"
 #include "flow/sweep.hpp"
 
@@ -81,8 +84,9 @@ void predict(const Grid& grid, const MomentumTerms& t) {
       const bool active = grid.active(c);
       const Metrics& mc = m[c];
       const Real* inv_volume = m[0].inv_volume;
+      const int nx = grid.nx();
       const auto finish = [=](auto with_source, auto with_pressure) {
-        for_each_lane(0, grid.nx(), [=](int i) {
+        for_each_lane(0, nx, [=](int i) {
           const int at = c == 0 ? i : c == 1 ? j : k;
           Real rate = acceleration - b[i] * inv_volume[i] * inv_jk;
           if constexpr (with_pressure) rate -= pressure_gradient(p + i, s, mc, at);
@@ -108,7 +112,91 @@ void predict(const Grid& grid, const MomentumTerms& t) {
   });
 }
 
+/// Adds what one row of lower D-faces carries; sign +1 where they are the lower boundary of the box.
+template <int D, class Face>
+void book_row(const Face& face, int j, int k, int i0, int i1, double sign, BoundaryFlow& sum) {
+  const int count = i1;
+  Real* buffer = thread_scratch(static_cast<std::size_t>(3 * (count + 1)), 2);
+  Real* rows[3] = {buffer, buffer + count + 1, buffer + 2 * (count + 1)};
+  face.template flux<D>(j, k, i0, i1, rows);
+  const Real* q = face.q[D].row(j, k);
+  for (int i = i0; i < i1; ++i) {
+    for (int c = 0; c < 3; ++c) sum.momentum[c] += sign * double(rows[c][i]);
+    const double volume = sign * double(face_area<D>(face.m, i, j, k)) * double(q[i]);
+    sum.volume += volume;
+    sum.volume_in += std::max(volume, 0.0);
+  }
+}
+
+template <bool kTurbulent>
+BoundaryFlow boundary_flow_of(const Grid& grid, const MomentumTerms& t, std::vector<BoundaryFlow>& scratch) {
+  const MomentumFlux<kTurbulent> face{t.u,
+                                      t.face_velocity,
+                                      t.eddy_viscosity,
+                                      {grid.metrics(0), grid.metrics(1), grid.metrics(2)},
+                                      t.viscosity};
+  const int nx = grid.nx(), ny = grid.ny(), nz = grid.nz();
+  for_each_index(nz, [&](int k) {
+    BoundaryFlow sum;
+    if (grid.active(0))
+      for (int j = 0; j < ny; ++j) {
+        book_row<0>(face, j, k, 0, 1, 1.0, sum);
+        book_row<0>(face, j, k, nx, nx + 1, -1.0, sum);
+      }
+    if (grid.active(1)) {
+      book_row<1>(face, 0, k, 0, nx, 1.0, sum);
+      book_row<1>(face, ny, k, 0, nx, -1.0, sum);
+    }
+    scratch[static_cast<std::size_t>(k)] = sum;
+  });
+  for_each_index(grid.active(2) ? ny : 0, [&](int j) {
+    BoundaryFlow sum;
+    book_row<2>(face, j, 0, 0, nx, 1.0, sum);
+    book_row<2>(face, j, nz, 0, nx, -1.0, sum);
+    scratch[static_cast<std::size_t>(nz + j)] = sum;
+  });
+  BoundaryFlow total;
+  for (int n = 0; n < nz + (grid.active(2) ? ny : 0); ++n) {
+    const BoundaryFlow& part = scratch[static_cast<std::size_t>(n)];
+    total.momentum += part.momentum;
+    total.volume += part.volume;
+    total.volume_in += part.volume_in;
+  }
+  return total;
+}
+
 }  // namespace
+
+BoundaryFlow boundary_flow(const Grid& grid, const MomentumTerms& terms, std::vector<BoundaryFlow>& scratch) {
+  return terms.eddy_viscosity.origin ? boundary_flow_of<true>(grid, terms, scratch)
+                                     : boundary_flow_of<false>(grid, terms, scratch);
+}
+
+Vec3 boundary_pressure(const Grid& grid, ConstFieldView p) {
+  const Metrics m[3] = {grid.metrics(0), grid.metrics(1), grid.metrics(2)};
+  Vec3 force{0, 0, 0};
+  const auto add = [&](auto direction, int side) {
+    constexpr int D = decltype(direction)::value;
+    if (!grid.active(D)) return;
+    const int n = side ? grid.n(D) : 0;
+    Range3 r = grid.range();
+    (D == 0 ? r.i0 : D == 1 ? r.j0 : r.k0) = n;
+    (D == 0 ? r.i1 : D == 1 ? r.j1 : r.k1) = n + 1;
+    const std::ptrdiff_t s = stride(p, D);
+    const Real w = m[D].weight[n];
+    const double sum = reduce_sum(r, [=](int i, int j, int k) {
+      const Real* pc = p.row(j, k) + i;
+      return double(face_area<D>(m, i, j, k)) * double(w * pc[-s] + (Real(1) - w) * pc[0]);
+    });
+    force[D] += side ? -sum : sum;
+  };
+  for (int side = 0; side < 2; ++side) {
+    add(std::integral_constant<int, 0>{}, side);
+    add(std::integral_constant<int, 1>{}, side);
+    add(std::integral_constant<int, 2>{}, side);
+  }
+  return force;
+}
 
 void predict_momentum(const Grid& grid, const MomentumTerms& terms) {
   terms.eddy_viscosity.origin ? predict<true>(grid, terms) : predict<false>(grid, terms);

@@ -1,6 +1,8 @@
 #pragma once
 #include <array>
+#include <vector>
 
+#include "base/vec.hpp"
 #include "grid/grid.hpp"
 
 namespace ejecta {
@@ -23,5 +25,19 @@ struct MomentumTerms {
 };
 
 void predict_momentum(const Grid& grid, const MomentumTerms& terms);
+
+/// What crosses the boundaries of the box, counted on their faces and not from the cells' balances, so that
+/// the ledger can tell whether anything was lost inside. Positive into the box.
+struct BoundaryFlow {
+  Vec3 momentum{0, 0, 0};  ///< convection and viscous stress over density, m4/s2
+  double volume = 0;       ///< net, m3/s
+  double volume_in = 0;    ///< m3/s
+};
+
+/// `scratch` has ny + nz entries.
+BoundaryFlow boundary_flow(const Grid& grid, const MomentumTerms& terms, std::vector<BoundaryFlow>& scratch);
+
+/// Force of the pressure on the fluid at the boundaries, over density, m4/s2. p has filled ghosts.
+Vec3 boundary_pressure(const Grid& grid, ConstFieldView p);
 
 }  // namespace ejecta

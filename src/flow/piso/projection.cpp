@@ -34,21 +34,15 @@ void faces_along(const Grid& grid, ConstFieldView u, ConstFieldView p, Real dt, 
 struct Outflow {
   std::array<ConstFieldView, 3> q;
   Metrics m[3];
-  bool active[3];
-  Real operator()(int i, int j, int k) const {
-    Real sum = 0;
-    if (active[0])
-      sum += face_area<0>(m, i + 1, j, k) * q[0](i + 1, j, k) - face_area<0>(m, i, j, k) * q[0](i, j, k);
-    if (active[1]) sum += face_area<1>(m, i, j, k) * (q[1](i, j + 1, k) - q[1](i, j, k));
-    if (active[2]) sum += face_area<2>(m, i, j, k) * (q[2](i, j, k + 1) - q[2](i, j, k));
-    return sum;
+  Real operator()(int i, int j, int k) const {  // q is zero along directions of a single cell
+    return face_area<0>(m, i + 1, j, k) * q[0](i + 1, j, k) - face_area<0>(m, i, j, k) * q[0](i, j, k) +
+           face_area<1>(m, i, j, k) * (q[1](i, j + 1, k) - q[1](i, j, k)) +
+           face_area<2>(m, i, j, k) * (q[2](i, j, k + 1) - q[2](i, j, k));
   }
 };
 
 Outflow outflow(const Grid& grid, const std::array<ConstFieldView, 3>& q) {
-  return {q,
-          {grid.metrics(0), grid.metrics(1), grid.metrics(2)},
-          {grid.active(0), grid.active(1), grid.active(2)}};
+  return {q, {grid.metrics(0), grid.metrics(1), grid.metrics(2)}};
 }
 
 }  // namespace

@@ -7,32 +7,24 @@
 /// Two-equation closures as pure functions of one point. k in m2/s2, epsilon in m2/s3, omega in 1/s.
 namespace ejecta {
 
-/// Velocity gradient g[i][j] = d u_i / d x_j, 1/s.
+/// Velocity gradient: xy = d u_x / d y, 1/s. Named members, not an array: the loops around must vectorise.
 struct VelocityGradient {
-  Real g[3][3];
+  Real xx, xy, xz, yx, yy, yz, zx, zy, zz;
 };
 
 /// 2 S_ij S_ij, 1/s2, S the symmetric part of the gradient.
 inline Real strain_squared(const VelocityGradient& v) {
-  Real sum = 0;
-  for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j) {
-      const Real s = v.g[i][j] + v.g[j][i];
-      sum += Real(0.5) * s * s;
-    }
-  return sum;
+  const Real xy = v.xy + v.yx, xz = v.xz + v.zx, yz = v.yz + v.zy;
+  return Real(2) * (v.xx * v.xx + v.yy * v.yy + v.zz * v.zz) + xy * xy + xz * xz + yz * yz;
 }
 
 /// Pope's invariant of vortex stretching w_ij w_jk s_ki, without its factor (k / epsilon)^3: with S and W the
 /// symmetric and antisymmetric parts of the gradient, W_ij W_jk S_ki, 1/s3 (Pope 1978, AIAA J. 16:279). Zero
-/// in plane flow.
+/// in plane flow. With the vorticity w, W_ij W_jk = (w_i w_k - w^2 delta_ik) / 4, and S has no trace.
 inline Real vortex_stretching(const VelocityGradient& v) {
-  // With vorticity w, W_ij W_jk = (w_i w_k - w^2 delta_ik) / 4, and S is free of trace.
-  const Real w[3] = {v.g[2][1] - v.g[1][2], v.g[0][2] - v.g[2][0], v.g[1][0] - v.g[0][1]};
-  Real sum = 0;
-  for (int i = 0; i < 3; ++i)
-    for (int k = 0; k < 3; ++k) sum += w[i] * w[k] * Real(0.5) * (v.g[i][k] + v.g[k][i]);
-  return Real(0.25) * sum;
+  const Real x = v.zy - v.yz, y = v.xz - v.zx, z = v.yx - v.xy;
+  return Real(0.25) * (x * x * v.xx + y * y * v.yy + z * z * v.zz + x * y * (v.xy + v.yx) +
+                       x * z * (v.xz + v.zx) + y * z * (v.yz + v.zy));
 }
 
 /// Standard k-epsilon (Launder & Spalding 1974), with Pope's round-jet term.

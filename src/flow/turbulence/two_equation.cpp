@@ -9,27 +9,57 @@
 namespace ejecta {
 namespace {
 
-struct Strain {
-  std::array<ConstFieldView, 3> u;
-  Metrics m[3];
-  bool axisymmetric;
+/// Rows of the three velocities around (., j, k), with the spans of their central differences.
+struct GradientRow {
+  const Real *x, *y, *z, *span_x, *radius;
+  std::ptrdiff_t sy, sz;
+  Real span_y, span_z;
 
-  VelocityGradient operator()(int i, int j, int k) const {
-    const Real span[3] = {m[0].inv_span[i], m[1].inv_span[j], m[2].inv_span[k]};
-    VelocityGradient v;
-    for (int c = 0; c < 3; ++c) {
-      const Real* p = u[c].row(j, k) + i;
-      v.g[c][0] = derivative(p, 1, span[0]);
-      v.g[c][1] = derivative(p, u[c].sy, span[1]);
-      v.g[c][2] = derivative(p, u[c].sz, span[2]);
-    }
-    if (axisymmetric) v.g[1][1] = u[0](i, j, k) / m[0].centre[i];  // hoop strain u_r / r
+  VelocityGradient operator()(int i) const {
+    const Real sx = span_x[i];
+    VelocityGradient v{
+        derivative(x + i, 1, sx), derivative(x + i, sy, span_y), derivative(x + i, sz, span_z),
+        derivative(y + i, 1, sx), derivative(y + i, sy, span_y), derivative(y + i, sz, span_z),
+        derivative(z + i, 1, sx), derivative(z + i, sy, span_y), derivative(z + i, sz, span_z)};
+    if (radius) v.yy = x[i] / radius[i];  // hoop strain u_r / r
     return v;
   }
 };
 
-Strain strain(const Grid& grid, const std::array<ConstFieldView, 3>& u) {
-  return {u, {grid.metrics(0), grid.metrics(1), grid.metrics(2)}, grid.axisymmetric()};
+GradientRow gradient_row(const Grid& grid, const std::array<ConstFieldView, 3>& u, int j, int k) {
+  return {u[0].row(j, k),
+          u[1].row(j, k),
+          u[2].row(j, k),
+          grid.metrics(0).inv_span,
+          grid.axisymmetric() ? grid.metrics(0).centre : nullptr,
+          u[0].sy,
+          u[0].sz,
+          grid.metrics(1).inv_span[j],
+          grid.metrics(2).inv_span[k]};
+}
+
+/// grad a . grad b along row (., j, k).
+struct ProductRow {
+  const Real *a, *b, *span_x;
+  std::ptrdiff_t sy, sz;
+  Real span_y, span_z;
+
+  Real operator()(int i) const {
+    const Real sx = span_x[i];
+    return derivative(a + i, 1, sx) * derivative(b + i, 1, sx) +
+           derivative(a + i, sy, span_y) * derivative(b + i, sy, span_y) +
+           derivative(a + i, sz, span_z) * derivative(b + i, sz, span_z);
+  }
+};
+
+ProductRow product_row(const Grid& grid, ConstFieldView a, ConstFieldView b, int j, int k) {
+  return {a.row(j, k),
+          b.row(j, k),
+          grid.metrics(0).inv_span,
+          a.sy,
+          a.sz,
+          grid.metrics(1).inv_span[j],
+          grid.metrics(2).inv_span[k]};
 }
 
 template <bool kSst>
@@ -71,50 +101,54 @@ struct ScalarFlux {
 };
 
 template <bool kSst, bool kRound>
-void transport(const Grid& grid, const ScalarFlux<kSst>& face, const Strain& gradient, FieldView k_new,
-               FieldView second_new) {
+void transport(const Grid& grid, const ScalarFlux<kSst>& face, const std::array<ConstFieldView, 3>& u,
+               FieldView k_new, FieldView second_new) {
   sweep<2>(grid, face, [&](int j, int k, Real* const(&balance)[2]) {
-    const Real *b0 = balance[0], *b1 = balance[1];
+    const Real *b0 = balance[0], *b1 = balance[1], *inv_volume = face.m[0].inv_volume;
     const Real dt = face.dt, inv_jk = face.m[1].inv_volume[j] * face.m[2].inv_volume[k];
-    for_each_lane(0, grid.nx(), [=, &face, &gradient](int i) {
-      const Real inv_volume = face.m[0].inv_volume[i] * inv_jk;
-      const Real k0 = face.value[0](i, j, k), s0 = face.value[1](i, j, k), nut = face.nut(i, j, k);
-      const VelocityGradient v = gradient(i, j, k);
-      const Real strain2 = strain_squared(v);
-      const Real k_carried = k0 - dt * b0[i] * inv_volume, s_carried = s0 - dt * b1[i] * inv_volume;
-      Real k1, s1;
-      if constexpr (kSst) {
-        using namespace k_omega_sst;
-        const Real f1 = face.f1(i, j, k);
-        const Real beta = blend(f1, kBeta1, kBeta2);
-        const Real produced = std::min(nut * strain2, Real(20) * kBetaStar * k0 * s0);
-        Real gradients = 0;
-        const std::ptrdiff_t steps[3] = {1, face.nut.sy, face.nut.sz};
-        const int at[3] = {i, j, k};
-        for (int d = 0; d < 3; ++d)
-          gradients += derivative(&face.value[0](i, j, k), steps[d], face.m[d].inv_span[at[d]]) *
-                       derivative(&face.value[1](i, j, k), steps[d], face.m[d].inv_span[at[d]]);
-        const Real cross = (Real(1) - f1) * cross_diffusion(s0, gradients);
-        k1 = (k_carried + dt * produced) / (Real(1) + dt * kBetaStar * s0);
-        s1 = (s_carried + dt * (gamma(f1) * std::min(strain2, Real(20) * kBetaStar * k0 * s0 /
-                                                                  std::max(nut, Real(1e-12))) +
-                                std::max(cross, Real(0)))) /
-             (Real(1) + dt * (beta * s0 + std::max(-cross, Real(0)) / s0));
-      } else {
-        using namespace k_epsilon;
-        const Real rate = s0 / k0, produced = nut * strain2;
-        Real gain = kC1 * produced, loss = kC2;
-        if constexpr (kRound) {
-          const Real pope = kC3 * pope_chi(k0, s0, vortex_stretching(v));
-          gain += std::max(pope, Real(0)) * s0;
-          loss += std::max(-pope, Real(0));
+    const Real *old_k = face.value[0].row(j, k), *old_second = face.value[1].row(j, k),
+               *eddy = face.nut.row(j, k);
+    const Real* blending = kSst ? face.f1.row(j, k) : nullptr;
+    Real *out_k = k_new.row(j, k), *out_second = second_new.row(j, k);
+    const GradientRow gradient = gradient_row(grid, u, j, k);
+    const ProductRow product = product_row(grid, face.value[0], face.value[1], j, k);
+    const int nx = grid.nx();
+    const auto update = [=](auto axisymmetric) {
+      GradientRow row = gradient;
+      if constexpr (!axisymmetric) row.radius = nullptr;
+      for_each_lane(0, nx, [=](int i) {
+        const Real k0 = old_k[i], s0 = old_second[i], nut = eddy[i];
+        const VelocityGradient v = row(i);
+        const Real strain2 = strain_squared(v);
+        const Real by_volume = dt * inv_volume[i] * inv_jk;
+        const Real k_carried = k0 - by_volume * b0[i], s_carried = s0 - by_volume * b1[i];
+        Real k1, s1;
+        if constexpr (kSst) {
+          using namespace k_omega_sst;
+          const Real f1 = blending[i], beta = blend(f1, kBeta1, kBeta2),
+                     most = Real(20) * kBetaStar * k0 * s0;
+          const Real cross = (Real(1) - f1) * cross_diffusion(s0, product(i));
+          const Real gain =
+              gamma(f1) * std::min(strain2, most / std::max(nut, Real(1e-12))) + std::max(cross, Real(0));
+          k1 = (k_carried + dt * std::min(nut * strain2, most)) / (Real(1) + dt * kBetaStar * s0);
+          s1 = (s_carried + dt * gain) / (Real(1) + dt * (beta * s0 + std::max(-cross, Real(0)) / s0));
+        } else {
+          using namespace k_epsilon;
+          const Real rate = s0 / k0, produced = nut * strain2;
+          Real gain = kC1 * produced, loss = kC2;
+          if constexpr (kRound) {
+            const Real pope = kC3 * pope_chi(k0, s0, vortex_stretching(v));
+            gain += std::max(pope, Real(0)) * s0;
+            loss += std::max(-pope, Real(0));
+          }
+          k1 = (k_carried + dt * produced) / (Real(1) + dt * rate);
+          s1 = (s_carried + dt * rate * gain) / (Real(1) + dt * loss * rate);
         }
-        k1 = (k_carried + dt * produced) / (Real(1) + dt * rate);
-        s1 = (s_carried + dt * rate * gain) / (Real(1) + dt * loss * rate);
-      }
-      k_new(i, j, k) = std::max(k1, kMinimalK);
-      second_new(i, j, k) = std::max(s1, kMinimalSecond);
-    });
+        out_k[i] = std::max(k1, kMinimalK);
+        out_second[i] = std::max(s1, kMinimalSecond);
+      });
+    };
+    grid.axisymmetric() ? update(std::true_type{}) : update(std::false_type{});
   });
 }
 
@@ -145,46 +179,56 @@ void TwoEquation::set_at(int i, int j, int k_index, double k, double second) {
   second_(i, j, k_index) = std::max(static_cast<Real>(second), kMinimalSecond);
 }
 
-Real TwoEquation::wall_distance(int i, int j, int k) const {
-  const int at[3] = {i, j, k};
-  Real distance = Real(1e3);
+void TwoEquation::measure_walls(const Boundaries& b) {
   for (int d = 0; d < 3; ++d) {
     const Metrics m = grid_.metrics(d);
-    if (is_wall_[2 * d]) distance = std::min(distance, m.centre[at[d]] - m.face[0]);
-    if (is_wall_[2 * d + 1]) distance = std::min(distance, m.face[grid_.n(d)] - m.centre[at[d]]);
+    std::vector<Real>& distance = wall_distance_[static_cast<std::size_t>(d)];
+    distance.assign(static_cast<std::size_t>(grid_.n(d)), Real(1e3));
+    for (int side = 0; side < 2; ++side) {
+      const bool wall = grid_.active(d) && b.kind(2 * d + side) == BoundaryKind::wall;
+      is_wall_[static_cast<std::size_t>(2 * d + side)] = wall;
+      for (int i = 0; wall && i < grid_.n(d); ++i) {
+        Real& here = distance[static_cast<std::size_t>(i)];
+        here = std::min(here, std::abs(m.centre[i] - m.face[side ? grid_.n(d) : 0]));
+      }
+    }
   }
-  return distance;
+}
+
+template <class Kernel>
+void TwoEquation::for_each_row(const Kernel& kernel) const {
+  for_each_index(grid_.nz(), [&](int k) {
+    for (int j = 0; j < grid_.ny(); ++j) kernel(j, k);
+  });
 }
 
 void TwoEquation::update_eddy_viscosity(const Boundaries& b, const std::array<ConstFieldView, 3>& u,
                                         const std::array<FieldView, 3>& q, const SolidMask& solids) {
-  for (int face = 0; face < 6; ++face)
-    is_wall_[face] = grid_.active(face / 2) && b.kind(face) == BoundaryKind::wall;
+  if (wall_distance_[0].empty()) measure_walls(b);
   b.fill_turbulence(k_.view(), second_.view(), q);
-  const FieldView nut = nut_.view(), f1 = f1_.view();
-  const ConstFieldView k = k_.view(), second = second_.view();
+  const FieldView nut = nut_.view();
+  const int nx = grid_.nx();
   const Real nu = nu_;
-  if (model_ == TwoEquationModel::k_epsilon) {
-    for_each_cell(grid_.range(), [=](int i, int j, int l) {
-      nut(i, j, l) = k_epsilon::eddy_viscosity(k(i, j, l), second(i, j, l));
+  for_each_row([&, this](int j, int l) {
+    const Real *k = k_.view().row(j, l), *second = second_.view().row(j, l);
+    Real *out = nut_.view().row(j, l), *blending = f1_.view().row(j, l);
+    if (model_ == TwoEquationModel::k_epsilon) {
+      for_each_lane(0, nx, [=](int i) { out[i] = k_epsilon::eddy_viscosity(k[i], second[i]); });
+      return;
+    }
+    const GradientRow gradient = gradient_row(grid_, u, j, l);
+    const ProductRow product = product_row(grid_, k_.view(), second_.view(), j, l);
+    const Real* distance_x = wall_distance_[0].data();
+    const Real distance_jl = std::min(wall_distance_[1][static_cast<std::size_t>(j)],
+                                      wall_distance_[2][static_cast<std::size_t>(l)]);
+    for_each_lane(0, nx, [=](int i) {
+      const Real d = std::min(distance_x[i], distance_jl), w = second[i];
+      blending[i] = k_omega_sst::f1(k[i], w, nu, d, k_omega_sst::cross_diffusion(w, product(i)));
+      const Real strain = std::sqrt(strain_squared(gradient(i)));
+      out[i] = k_omega_sst::eddy_viscosity(k[i], w, strain, k_omega_sst::f2(k[i], w, nu, d));
     });
-  } else {
-    const Strain gradient = strain(grid_, u);
-    const Metrics m[3] = {grid_.metrics(0), grid_.metrics(1), grid_.metrics(2)};
-    for_each_cell(grid_.range(), [=, this](int i, int j, int l) {
-      using namespace k_omega_sst;
-      const Real d = wall_distance(i, j, l), kk = k(i, j, l), w = second(i, j, l);
-      const std::ptrdiff_t steps[3] = {1, k.sy, k.sz};
-      const int at[3] = {i, j, l};
-      Real gradients = 0;
-      for (int c = 0; c < 3; ++c)
-        gradients += derivative(&k(i, j, l), steps[c], m[c].inv_span[at[c]]) *
-                     derivative(&second(i, j, l), steps[c], m[c].inv_span[at[c]]);
-      f1(i, j, l) = k_omega_sst::f1(kk, w, nu, d, cross_diffusion(w, gradients));
-      nut(i, j, l) = eddy_viscosity(kk, w, std::sqrt(strain_squared(gradient(i, j, l))), f2(kk, w, nu, d));
-    });
-    b.fill_zero_gradient(f1);
-  }
+  });
+  if (model_ == TwoEquationModel::k_omega_sst) b.fill_zero_gradient(f1_.view());
   for_each_index(static_cast<int>(solids.cells.size()), [&](int n) {
     const SolidCell& c = solids.cells[static_cast<std::size_t>(n)];
     nut(c.i, c.j, c.k) *= Real(1) - c.weight;
@@ -228,7 +272,6 @@ void TwoEquation::apply_walls() {
 void TwoEquation::advance(const Boundaries& b, const std::array<ConstFieldView, 3>& u,
                           const std::array<FieldView, 3>& q, const SolidMask& solids, Real dt) {
   b.fill_turbulence(k_.view(), second_.view(), q);
-  const Strain gradient = strain(grid_, u);
   const std::array<ConstFieldView, 3> faces{q[0], q[1], q[2]};
   const auto run = [&](auto sst, auto round) {
     const ScalarFlux<sst> face{{k_.view(), second_.view()},
@@ -238,7 +281,7 @@ void TwoEquation::advance(const Boundaries& b, const std::array<ConstFieldView, 
                                {grid_.metrics(0), grid_.metrics(1), grid_.metrics(2)},
                                nu_,
                                dt};
-    transport<sst, round>(grid_, face, gradient, k_new_.view(), second_new_.view());
+    transport<sst, round>(grid_, face, u, k_new_.view(), second_new_.view());
   };
   if (model_ == TwoEquationModel::k_omega_sst) run(std::true_type{}, std::false_type{});
   else if (round_jet_) run(std::false_type{}, std::true_type{});

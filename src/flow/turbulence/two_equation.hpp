@@ -1,5 +1,6 @@
 #pragma once
 #include <array>
+#include <vector>
 
 #include "flow/boundary.hpp"
 #include "flow/solid_mask.hpp"
@@ -31,7 +32,9 @@ class TwoEquation {
 
  private:
   void apply_walls();
-  Real wall_distance(int i, int j, int k) const;
+  void measure_walls(const Boundaries& b);
+  template <class Kernel>
+  void for_each_row(const Kernel& kernel) const;
 
   const Grid& grid_;
   TwoEquationModel model_;
@@ -39,6 +42,7 @@ class TwoEquation {
   Real nu_;
   Field k_, second_, nut_, f1_, k_new_, second_new_;
   std::array<bool, 6> is_wall_{};
+  std::array<std::vector<Real>, 3> wall_distance_;  // to the nearest wall normal to each axis, m
 };
 
 /// Floors that keep still air still: far below any turbulence that matters.

@@ -1,0 +1,23 @@
+#pragma once
+#include <chrono>
+
+namespace ejecta {
+
+inline double wall_seconds() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+/// Adds the time of its scope to `total`, s.
+class ScopedTimer {
+ public:
+  explicit ScopedTimer(double& total) : total_(total), start_(wall_seconds()) {}
+  ~ScopedTimer() { total_ += wall_seconds() - start_; }
+  ScopedTimer(const ScopedTimer&) = delete;
+  ScopedTimer& operator=(const ScopedTimer&) = delete;
+
+ private:
+  double& total_;
+  double start_;
+};
+
+}  // namespace ejecta

@@ -1,0 +1,375 @@
+#include "flow/piso/incompressible.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "base/error.hpp"
+#include "base/stopwatch.hpp"
+#include "flow/piso/momentum.hpp"
+#include "flow/piso/projection.hpp"
+#include "flow/stencil.hpp"
+
+namespace ejecta {
+namespace {
+
+std::array<PoissonBoundary, 6> poisson_boundaries(const std::array<Boundary, 6>& faces) {
+  std::array<PoissonBoundary, 6> b;
+  for (std::size_t f = 0; f < 6; ++f)
+    b[f] = faces[f].kind == BoundaryKind::open       ? PoissonBoundary::dirichlet
+           : faces[f].kind == BoundaryKind::periodic ? PoissonBoundary::periodic
+                                                     : PoissonBoundary::neumann;
+  return b;
+}
+
+void check_periodic(const Grid& grid, const std::array<Boundary, 6>& faces) {
+  for (int d = 0; d < 3; ++d) {
+    const bool low = faces[2 * d].kind == BoundaryKind::periodic,
+               high = faces[2 * d + 1].kind == BoundaryKind::periodic;
+    if (low != high)
+      throw InputError(fmt::format("boundary {0}_min and {0}_max must both be periodic", "xyz"[d]));
+    const Axis& a = grid.axis(d);
+    if (low && std::abs(a.width.front() - a.width.back()) > 1e-9 * a.width.front())
+      throw InputError(
+          fmt::format("a periodic direction needs equal first and last cells, in {} they are {} and {} m",
+                      "xyz"[d], a.width.front(), a.width.back()));
+  }
+}
+
+/// u at the image point of a solid cell, trilinear.
+Real image_velocity(const SolidCell& c, ConstFieldView u) {
+  const Real* p = &u(c.image_i, c.image_j, c.image_k);
+  const auto [x, y, z] = c.fraction;
+  const auto along_x = [&](const Real* q) { return q[0] + x * (q[1] - q[0]); };
+  const auto along_y = [&](const Real* q) {
+    const Real low = along_x(q);
+    return low + y * (along_x(q + u.sy) - low);
+  };
+  const Real low = along_y(p);
+  return low + z * (along_y(p + u.sz) - low);
+}
+
+}  // namespace
+
+Incompressible::Incompressible(const Grid& grid, std::array<Boundary, 6> boundaries,
+                               const IncompressibleSetup& setup)
+    : grid_(grid),
+      setup_(setup),
+      boundaries_(grid, boundaries),
+      poisson_(grid, poisson_boundaries(boundaries)),
+      p_(grid.make_field()),
+      phi_(grid.make_field()) {
+  check_periodic(grid, boundaries);
+  for (auto* group : {&u_, &u_old_, &u_star_, &q_})
+    for (Field& f : *group) f = grid.make_field();
+  if (setup.source)
+    for (Field& f : source_) f = grid.make_field();
+  if (setup.turbulence)
+    turbulence_ =
+        std::make_unique<TwoEquation>(grid, *setup.turbulence, setup.round_jet_correction, setup.viscosity);
+  boundary_sums_.resize(static_cast<std::size_t>(grid.ny() + grid.nz()));
+  const Metrics m[3] = {grid.metrics(0), grid.metrics(1), grid.metrics(2)};
+  box_volume_ = reduce_sum(grid.range(), [=](int i, int j, int k) {
+    return double(m[0].volume[i]) * double(m[1].volume[j]) * double(m[2].volume[k]);
+  });
+}
+
+std::array<FieldView, 3> Incompressible::views(std::array<Field, 3>& f) {
+  return {f[0].view(), f[1].view(), f[2].view()};
+}
+
+std::array<ConstFieldView, 3> Incompressible::views(const std::array<Field, 3>& f) const {
+  return {f[0].view(), f[1].view(), f[2].view()};
+}
+
+void Incompressible::initialise(const std::function<Vec3(const Vec3&)>& velocity,
+                                const std::function<double(const Vec3&)>& pressure, double time) {
+  for (int k = 0; k < grid_.nz(); ++k)
+    for (int j = 0; j < grid_.ny(); ++j)
+      for (int i = 0; i < grid_.nx(); ++i) {
+        const Vec3 x = grid_.centre(i, j, k), v = velocity(x);
+        for (int c = 0; c < 3; ++c) u_[c](i, j, k) = static_cast<Real>(v[c]);
+        p_(i, j, k) = static_cast<Real>(pressure(x));
+      }
+  boundaries_.update(time);
+  // One projection with an arbitrary step: only velocities change, the pressure is the one given.
+  const Real dt = 1;
+  SolidMask none;
+  Field given = p_;
+  p_.fill(0);
+  for (int c = 0; c < 3; ++c) u_star_[c] = u_[c];
+  boundaries_.fill_velocity(views(u_star_), views(q_));
+  correct(none, dt);
+  p_ = given;
+  boundaries_.fill_pressure(p_.view(), views(q_), true);
+  times_ = {};
+  if (turbulence_) turbulence_->update_eddy_viscosity(boundaries_, this->velocity(), views(q_), none);
+}
+
+namespace {
+
+/// Inverse time scales of one cell: convection sum |u| / h and viscosity 2 nu sum 1 / h2, 1/s.
+struct Rates {
+  std::array<ConstFieldView, 3> u;
+  ConstFieldView nut;
+  Metrics x, y, z;
+  Real on_x, on_y, on_z, nu;
+
+  Real convection(int i, int j, int k) const {
+    return on_x * std::abs(u[0](i, j, k)) * x.inv_width[i] + on_y * std::abs(u[1](i, j, k)) * y.inv_width[j] +
+           on_z * std::abs(u[2](i, j, k)) * z.inv_width[k];
+  }
+  Real viscosity(int i, int j, int k, Real eddy) const {
+    const Real hx = x.inv_width[i], hy = y.inv_width[j], hz = z.inv_width[k];
+    return Real(2) * (nu + eddy) * (on_x * hx * hx + on_y * hy * hy + on_z * hz * hz);
+  }
+};
+
+}  // namespace
+
+double Incompressible::stable_dt(double courant) const {
+  const Rates r = {views(u_),
+                   turbulence_ ? turbulence_->eddy_viscosity() : ConstFieldView{},
+                   grid_.metrics(0),
+                   grid_.metrics(1),
+                   grid_.metrics(2),
+                   Real(grid_.active(0)),
+                   Real(grid_.active(1)),
+                   Real(grid_.active(2)),
+                   static_cast<Real>(setup_.viscosity)};
+  // Heun's method damps the negative real axis to -2, where 4 nu sum 1/h2 dt lies.
+  const Real by_courant = static_cast<Real>(1.0 / courant), by_viscosity = Real(1.0 / 0.9);
+  const Real rate = turbulence_
+                        ? reduce_max(grid_.range(), Real(0),
+                                     [=](int i, int j, int k) {
+                                       return std::max(by_courant * r.convection(i, j, k),
+                                                       by_viscosity * r.viscosity(i, j, k, r.nut(i, j, k)));
+                                     })
+                        : reduce_max(grid_.range(), Real(0), [=](int i, int j, int k) {
+                            return std::max(by_courant * r.convection(i, j, k),
+                                            by_viscosity * r.viscosity(i, j, k, Real(0)));
+                          });
+  return 1.0 / std::max(double(rate), 1e-30);
+}
+
+double Incompressible::courant(double dt) const {
+  const Rates r = {views(u_),
+                   {},
+                   grid_.metrics(0),
+                   grid_.metrics(1),
+                   grid_.metrics(2),
+                   Real(grid_.active(0)),
+                   Real(grid_.active(1)),
+                   Real(grid_.active(2)),
+                   0};
+  return dt * double(reduce_max(grid_.range(), Real(0),
+                                [=](int i, int j, int k) { return r.convection(i, j, k); }));
+}
+
+void Incompressible::evaluate_source(double time) {
+  for_each_index(grid_.nz(), [&](int k) {
+    for (int j = 0; j < grid_.ny(); ++j)
+      for (int i = 0; i < grid_.nx(); ++i) {
+        const Vec3 s = setup_.source(grid_.centre(i, j, k), time);
+        for (int c = 0; c < 3; ++c) source_[c](i, j, k) = static_cast<Real>(s[c]);
+      }
+  });
+}
+
+void Incompressible::predict(double a, double b, double time, Real dt) {
+  {
+    ScopedTimer timer(times_.boundaries);
+    boundaries_.fill_velocity(views(u_), views(q_));
+    boundaries_.fill_pressure(p_.view(), views(q_), true);
+    if (setup_.source) evaluate_source(time);
+  }
+  ScopedTimer timer(times_.momentum);
+  MomentumTerms t;
+  t.old = std::as_const(*this).views(u_old_);
+  t.u = std::as_const(*this).views(u_);
+  t.face_velocity = std::as_const(*this).views(q_);
+  t.pressure = p_.view();
+  if (turbulence_) t.eddy_viscosity = turbulence_->eddy_viscosity();
+  if (setup_.source) t.source = std::as_const(*this).views(source_);
+  t.out = views(u_star_);
+  for (int c = 0; c < 3; ++c) t.acceleration[c] = static_cast<Real>(setup_.acceleration[c]);
+  t.viscosity = static_cast<Real>(setup_.viscosity);
+  t.a = static_cast<Real>(a);
+  t.b = static_cast<Real>(b);
+  t.dt = dt;
+  predict_momentum(grid_, t);
+}
+
+void Incompressible::force(SolidMask& solids, double weight) {
+  ScopedTimer timer(times_.forcing);
+  const int count = static_cast<int>(solids.cells.size());
+  const std::array<FieldView, 3> u = views(u_star_);
+  for_each_index(count, [&](int n) {
+    const SolidCell& c = solids.cells[static_cast<std::size_t>(n)];
+    for (int d = 0; d < 3; ++d) {
+      Real target = c.solid[d];
+      if (c.ratio != Real(0)) target += c.ratio * (image_velocity(c, u[d]) - c.solid[d]);
+      solids.target[static_cast<std::size_t>(n)][d] = target;
+    }
+  });
+  for_each_index(count, [&](int n) {
+    const SolidCell& c = solids.cells[static_cast<std::size_t>(n)];
+    const double volume = grid_.volume(c.i, c.j, c.k);
+    for (int d = 0; d < 3; ++d) {
+      Real& value = u[d](c.i, c.j, c.k);
+      const Real change = c.weight * (solids.target[static_cast<std::size_t>(n)][d] - value);
+      value += change;
+      solids.impulse[static_cast<std::size_t>(n)][d] += weight * volume * double(change);
+    }
+  });
+}
+
+void Incompressible::correct(const SolidMask& solids, Real dt) {
+  {
+    ScopedTimer timer(times_.faces);
+    bool periodic = false;
+    for (int f = 0; f < 6; ++f)
+      periodic = periodic || (grid_.active(f / 2) && boundaries_.kind(f) == BoundaryKind::periodic);
+    if (periodic) boundaries_.fill_velocity(views(u_star_), views(q_));
+    face_velocities(grid_, std::as_const(*this).views(u_star_), p_.view(), dt, views(q_));
+    // Next to solids the plain mean: the pressure inside a solid must not move the faces of the fluid.
+    for_each_index(static_cast<int>(solids.cells.size()), [&](int n) {
+      const SolidCell& c = solids.cells[static_cast<std::size_t>(n)];
+      const int at[3] = {c.i, c.j, c.k};
+      for (int d = 0; d < 3; ++d) {
+        if (!grid_.active(d)) continue;
+        const Metrics m = grid_.metrics(d);
+        const ConstFieldView u = u_star_[d].view();
+        const std::ptrdiff_t s = stride(u, d);
+        for (int side = 0; side < 2; ++side) {
+          const int face = at[d] + side;
+          if (face == 0 || face == grid_.n(d)) continue;
+          const Real* high = &u(c.i, c.j, c.k) + (side ? s : 0);
+          Real* q = &q_[d](c.i, c.j, c.k) + (side ? s : 0);
+          *q = m.weight[face] * high[-s] + (Real(1) - m.weight[face]) * high[0];
+        }
+      }
+    });
+    boundaries_.fill_face_velocity(views(q_), views(u_star_), p_.view(), dt);
+    divergence(grid_, std::as_const(*this).views(q_), dt, phi_.view());
+  }
+  {
+    ScopedTimer timer(times_.pressure);
+    poisson_.solve(phi_.view(), phi_.view());
+  }
+  ScopedTimer timer(times_.correction);
+  boundaries_.fill_pressure(phi_.view(), views(q_), false);
+  apply_correction(grid_, phi_.view(), dt, views(q_), views(u_star_), p_.view());
+  std::swap(u_, u_star_);
+}
+
+void Incompressible::advance(double time, double dt, SolidMask& solids) {
+  const Real h = static_cast<Real>(dt);
+  solids.resize_scratch();
+  std::fill(solids.impulse.begin(), solids.impulse.end(), std::array<double, 3>{0, 0, 0});
+  predict(0.0, 1.0, time, h);
+  book_boundaries(0.5, dt);
+  force(solids, 0.5);
+  {
+    ScopedTimer timer(times_.boundaries);
+    boundaries_.update(time + dt);
+  }
+  correct(solids, h);
+  book_pressure(phi_.view(), 0.5, dt);
+  std::swap(u_old_, u_star_);  // correct() left the velocity of the step's beginning there
+
+  predict(0.5, 0.5, time + dt, h);
+  book_boundaries(0.5, dt);
+  for (int n = 1; n < setup_.corrections; ++n) {
+    force(solids, 1.0);
+    correct(solids, h);
+    book_pressure(phi_.view(), 1.0, dt);
+    if (n + 1 < setup_.corrections) {
+      std::swap(u_, u_star_);
+      boundaries_.fill_pressure(p_.view(), views(q_), true);
+    }
+  }
+
+  leak_ = 0;
+  for (const SolidCell& c : solids.cells)
+    if (c.weight == Real(1) && c.ratio == Real(0))
+      for (int d = 0; d < 3; ++d)
+        leak_ = std::max(leak_, std::abs(double(u_[d](c.i, c.j, c.k) - c.solid[d])));
+  Vec3 impulse{0, 0, 0};
+  for (const auto& i : solids.impulse) impulse += Vec3(i[0], i[1], i[2]);
+  ledger_.impulse_on_solids -= setup_.density * impulse;
+
+  if (turbulence_) {
+    ScopedTimer timer(times_.turbulence);
+    boundaries_.fill_velocity(views(u_), views(q_));
+    turbulence_->advance(boundaries_, std::as_const(*this).views(u_), views(q_), solids, h);
+  }
+}
+
+void Incompressible::book_boundaries(double weight, double dt) {
+  MomentumTerms t;
+  t.u = std::as_const(*this).views(u_);
+  t.face_velocity = std::as_const(*this).views(q_);
+  if (turbulence_) t.eddy_viscosity = turbulence_->eddy_viscosity();
+  t.viscosity = static_cast<Real>(setup_.viscosity);
+  const BoundaryFlow through = boundary_flow(grid_, t, boundary_sums_);
+  const double factor = weight * dt * setup_.density;
+  ledger_.momentum_through_boundaries += factor * (through.momentum + setup_.acceleration * box_volume_);
+  ledger_.mass_through_boundaries += factor * through.volume;
+  ledger_.mass_in += factor * through.volume_in;
+  book_pressure(p_.view(), weight, dt);
+}
+
+void Incompressible::book_pressure(ConstFieldView p, double weight, double dt) {
+  ledger_.momentum_through_boundaries += weight * dt * setup_.density * boundary_pressure(grid_, p);
+}
+
+double Incompressible::largest_divergence() const { return ejecta::largest_divergence(grid_, views(q_)); }
+
+Vec3 Incompressible::momentum() const {
+  const Metrics m[3] = {grid_.metrics(0), grid_.metrics(1), grid_.metrics(2)};
+  Vec3 sum;
+  for (int c = 0; c < 3; ++c)
+    sum[c] = setup_.density * reduce_sum(grid_.range(), [=, u = u_[c].view()](int i, int j, int k) {
+               return double(u(i, j, k)) * double(m[0].volume[i]) * double(m[1].volume[j]) *
+                      double(m[2].volume[k]);
+             });
+  return sum;
+}
+
+double Incompressible::kinetic_energy() const {
+  const Metrics m[3] = {grid_.metrics(0), grid_.metrics(1), grid_.metrics(2)};
+  const std::array<ConstFieldView, 3> u = views(u_);
+  return 0.5 * setup_.density * reduce_sum(grid_.range(), [=](int i, int j, int k) {
+           const double x = u[0](i, j, k), y = u[1](i, j, k), z = u[2](i, j, k);
+           return (x * x + y * y + z * z) * double(m[0].volume[i]) * double(m[1].volume[j]) *
+                  double(m[2].volume[k]);
+         });
+}
+
+bool Incompressible::finite(Vec3* where) const {
+  const std::array<ConstFieldView, 3> u = views(u_);
+  const Real largest = reduce_max(grid_.range(), Real(0), [=](int i, int j, int k) {
+    return std::abs(u[0](i, j, k)) + std::abs(u[1](i, j, k)) + std::abs(u[2](i, j, k));
+  });
+  if (std::isfinite(largest)) return true;
+  for (int k = 0; where && k < grid_.nz(); ++k)
+    for (int j = 0; j < grid_.ny(); ++j)
+      for (int i = 0; i < grid_.nx(); ++i)
+        if (!std::isfinite(u[0](i, j, k) + u[1](i, j, k) + u[2](i, j, k))) {
+          *where = grid_.centre(i, j, k);
+          return false;
+        }
+  return false;
+}
+
+std::vector<Field*> Incompressible::state() {
+  std::vector<Field*> all{&u_[0], &u_[1], &u_[2], &q_[0], &q_[1], &q_[2], &p_};
+  if (turbulence_)
+    for (Field* f : turbulence_->state()) all.push_back(f);
+  return all;
+}
+
+}  // namespace ejecta

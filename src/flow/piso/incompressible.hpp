@@ -1,0 +1,110 @@
+#pragma once
+#include <array>
+#include <functional>
+#include <memory>
+#include <optional>
+
+#include "flow/boundary.hpp"
+#include "flow/piso/momentum.hpp"
+#include "flow/poisson/fast_diagonal.hpp"
+#include "flow/solid_mask.hpp"
+#include "flow/turbulence/two_equation.hpp"
+#include "grid/grid.hpp"
+
+namespace ejecta {
+
+struct IncompressibleSetup {
+  double density = 1.2;                        ///< kg/m3
+  double viscosity = 1.5e-5;                   ///< m2/s, kinematic
+  std::optional<TwoEquationModel> turbulence;  ///< empty: laminar
+  bool round_jet_correction = true;
+  int corrections = 2;         ///< pressure corrections a step, at least 2
+  Vec3 acceleration{0, 0, 0};  ///< m/s2
+  /// Manufactured momentum source (position, time) -> m/s2; empty: none.
+  std::function<Vec3(const Vec3&, double)> source;
+};
+
+/// Seconds spent in each operator since construction.
+struct FlowTimes {
+  double boundaries = 0, momentum = 0, forcing = 0, faces = 0, pressure = 0, correction = 0, turbulence = 0;
+};
+
+/// Totals of the fluid in the box, times density: kg m/s, and what crossed its boundaries, for the ledger.
+struct FlowLedger {
+  Vec3 momentum_through_boundaries{0, 0, 0};  ///< N s since construction, positive into the box
+  double mass_through_boundaries = 0;         ///< kg since construction, net, positive into the box
+  double mass_in = 0;                         ///< kg since construction, what came in
+  Vec3 impulse_on_solids{0, 0, 0};            ///< N s
+};
+
+/// Incompressible flow by PISO (Issa 1986) on a collocated graded grid. One step:
+///
+///   stage 1:  u*  = u + dt N(u)                        N = -div(q u) + div(2 nu S) - grad p + g
+///             u1  = project(force(u*))                  first pressure correction
+///   stage 2:  u** = (u + u1 + dt N(u1)) / 2             H(u) of Issa evaluated again with the corrected
+///   velocity
+///             u'  = project(force(u**))                 second pressure correction (more: repeated here)
+///
+/// which is Heun's method: second order in time, stable to a Courant number of 1. Solids are forced before
+/// each correction; pressure is incremental, so that whatever leaks through a solid in one correction is what
+/// the pressure changed in that step, and vanishes as the flow settles.
+class Incompressible {
+ public:
+  Incompressible(const Grid& grid, std::array<Boundary, 6> boundaries, const IncompressibleSetup& setup);
+
+  /// Sets velocity and p / rho everywhere, then makes the velocity divergence-free.
+  void initialise(const std::function<Vec3(const Vec3&)>& velocity,
+                  const std::function<double(const Vec3&)>& pressure, double time);
+  /// The largest step for a Courant number (sum over directions of |u| dt / h, Eq. 6 of the paper) and for
+  /// the explicit viscous terms.
+  double stable_dt(double courant) const;
+  double courant(double dt) const;
+  void advance(double time, double dt, SolidMask& solids);
+
+  std::array<ConstFieldView, 3> velocity() const { return {u_[0].view(), u_[1].view(), u_[2].view()}; }
+  const Field& velocity_field(int c) const { return u_[static_cast<std::size_t>(c)]; }
+  const Field& pressure_field() const { return p_; }  ///< p / rho, m2/s2
+  const TwoEquation* turbulence() const { return turbulence_.get(); }
+  TwoEquation* turbulence() { return turbulence_.get(); }
+  const Boundaries& boundaries() const { return boundaries_; }
+  const IncompressibleSetup& setup() const { return setup_; }
+  const Grid& grid() const { return grid_; }
+
+  double largest_divergence() const;
+  Vec3 momentum() const;  ///< kg m/s in the box (axisymmetric: per radian)
+  double kinetic_energy() const;
+  double leak() const {
+    return leak_;
+  }  ///< largest |u - solid| in a fully forced cell after the last step, m/s
+  const FlowTimes& times() const { return times_; }
+  const FlowLedger& ledger() const { return ledger_; }
+  FlowLedger& ledger() { return ledger_; }
+  /// False as soon as any velocity is not finite; `where` gets the first such cell.
+  bool finite(Vec3* where = nullptr) const;
+  /// Everything a resume needs, in a fixed order.
+  std::vector<Field*> state();
+
+ private:
+  void predict(double a, double b, double time, Real dt);
+  void force(SolidMask& solids, double weight);
+  void correct(const SolidMask& solids, Real dt);
+  void book_boundaries(double weight, double dt);
+  void book_pressure(ConstFieldView p, double weight, double dt);
+  void evaluate_source(double time);
+  std::array<FieldView, 3> views(std::array<Field, 3>& f);
+  std::array<ConstFieldView, 3> views(const std::array<Field, 3>& f) const;
+
+  const Grid& grid_;
+  IncompressibleSetup setup_;
+  Boundaries boundaries_;
+  FastDiagonalPoisson poisson_;
+  std::unique_ptr<TwoEquation> turbulence_;
+  std::array<Field, 3> u_, u_old_, u_star_, q_, source_;
+  Field p_, phi_;
+  std::vector<BoundaryFlow> boundary_sums_;  // scratch
+  double box_volume_ = 0, leak_ = 0;
+  FlowTimes times_;
+  FlowLedger ledger_;
+};
+
+}  // namespace ejecta
