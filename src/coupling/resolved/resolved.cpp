@@ -1,0 +1,185 @@
+#include "coupling/resolved/resolved.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/parallel.hpp"
+
+namespace ejecta {
+namespace {
+
+/// Depth, in cells along the normal, over which the forcing of a cell grows to full strength as the surface
+/// passes its centre: spreads the change of a whole cell over several steps.
+constexpr double kRamp = 0.2;
+
+}  // namespace
+
+ResolvedCoupling::ResolvedCoupling(const Grid& grid, double fluid_density, const Vec3& gravity)
+    : grid_(grid), density_(fluid_density), gravity_(gravity), planes_(static_cast<std::size_t>(grid.nz())) {}
+
+ResolvedCoupling::Extent ResolvedCoupling::extent(const Body& body) const {
+  Extent e{};
+  const double r = body.shape.bounding_radius();
+  for (int d = 0; d < 3; ++d) {
+    const Axis& axis = grid_.axis(d);
+    e.lower[d] = 0;
+    e.upper[d] = axis.n;
+    if (!grid_.active(d)) continue;  // two-dimensional flow: the body is cut by the plane of the cells
+    const double low = body.position[d] - r, high = body.position[d] + r;
+    if (high < axis.face.front() || low > axis.face.back()) e.empty = true;
+    e.lower[d] = axis.cell_at(low);
+    e.upper[d] = axis.cell_at(high) + 1;
+  }
+  return e;
+}
+
+SolidCell ResolvedCoupling::solid_cell(const Body& body, int index, int i, int j, int k,
+                                       double distance) const {
+  const Vec3 x = grid_.centre(i, j, k);
+  const int at[3] = {i, j, k};
+  SolidCell c;
+  c.i = i;
+  c.j = j;
+  c.k = k;
+  c.body = index;
+  const Vec3 v = body.velocity_at(x);
+  for (int d = 0; d < 3; ++d) c.solid[d] = static_cast<Real>(v[d]);
+
+  Vec3 normal = body.orientation * body.shape.gradient(body.to_body(x));
+  double across = 0.0;  // width of the cell along the normal, m
+  for (int d = 0; d < 3; ++d) {
+    if (!grid_.active(d)) normal[d] = 0.0;
+    across += std::abs(normal[d]) * grid_.axis(d).width[static_cast<std::size_t>(at[d])];
+  }
+  if (!(across > 0.0)) return c;
+  c.weight = static_cast<Real>(std::min(1.0, -distance / (kRamp * across)));
+  if (-distance >= across) return c;  // no fluid next to it
+  c.ratio = static_cast<Real>(distance / across);
+  const Vec3 image = x + (across - distance) * normal;
+  int* lowest[3] = {&c.image_i, &c.image_j, &c.image_k};
+  for (int d = 0; d < 3; ++d) {
+    const Axis& axis = grid_.axis(d);
+    if (!grid_.active(d)) continue;
+    int cell = axis.cell_at(image[d]);
+    if (image[d] < axis.centre[static_cast<std::size_t>(cell)]) --cell;
+    cell = std::clamp(cell, 0, axis.n - 2);
+    const std::size_t low = static_cast<std::size_t>(cell);
+    const double span = axis.centre[low + 1] - axis.centre[low];
+    *lowest[d] = cell;
+    c.fraction[static_cast<std::size_t>(d)] =
+        static_cast<Real>(std::clamp((image[d] - axis.centre[low]) / span, 0.0, 1.0));
+  }
+  return c;
+}
+
+/// One row of cells. The signed distance changes by no more than the way moved, so cells that cannot be near
+/// the surface are passed over.
+void ResolvedCoupling::map_row(const Body& body, int index, const Extent& e, int j, int k,
+                               std::vector<SolidCell>& out) const {
+  const Axis& axis = grid_.axis(0);
+  double known = 0.0, known_at = 0.0;
+  bool have = false;
+  for (int i = e.lower[0]; i < e.upper[0]; ++i) {
+    const double x = axis.centre[static_cast<std::size_t>(i)];
+    if (have && known > x - known_at) continue;  // still outside
+    const double width = grid_.axis(0).width[static_cast<std::size_t>(i)] +
+                         grid_.axis(1).width[static_cast<std::size_t>(j)] +
+                         grid_.axis(2).width[static_cast<std::size_t>(k)];
+    if (have && -known - (x - known_at) > width) {  // deep inside
+      SolidCell c;
+      c.i = i, c.j = j, c.k = k, c.body = index;
+      const Vec3 v = body.velocity_at(grid_.centre(i, j, k));
+      for (int d = 0; d < 3; ++d) c.solid[d] = static_cast<Real>(v[d]);
+      out.push_back(c);
+      continue;
+    }
+    known = body.signed_distance(grid_.centre(i, j, k));
+    known_at = x;
+    have = true;
+    if (known < 0.0) out.push_back(solid_cell(body, index, i, j, k, known));
+  }
+}
+
+void ResolvedCoupling::map(std::span<const Body> bodies, SolidMask& mask) {
+  mask.cells.clear();
+  for (int b = 0; b < static_cast<int>(bodies.size()); ++b) {
+    const Body& body = bodies[static_cast<std::size_t>(b)];
+    const Extent e = extent(body);
+    if (e.empty) continue;
+    for_each_index_dynamic(e.upper[2] - e.lower[2], [&](int plane) {
+      std::vector<SolidCell>& list = planes_[static_cast<std::size_t>(plane)];
+      list.clear();
+      for (int j = e.lower[1]; j < e.upper[1]; ++j) map_row(body, b, e, j, e.lower[2] + plane, list);
+    });
+    for (int plane = 0; plane < e.upper[2] - e.lower[2]; ++plane) {
+      const std::vector<SolidCell>& list = planes_[static_cast<std::size_t>(plane)];
+      mask.cells.insert(mask.cells.end(), list.begin(), list.end());
+    }
+  }
+  mask.resize_scratch();
+}
+
+void ResolvedCoupling::collect(std::span<const Body> bodies, const SolidMask& mask, double dt,
+                               std::span<Load> loads) {
+  motion_.resize(bodies.size());
+  for (Load& l : loads) l = Load{};
+  std::vector<double>& volume = wetted_;
+  volume.assign(bodies.size(), 0.0);
+  for (std::size_t n = 0; n < mask.cells.size(); ++n) {
+    const SolidCell& c = mask.cells[n];
+    const std::size_t b = static_cast<std::size_t>(c.body);
+    const Vec3 force = -density_ / dt * Vec3(mask.impulse[n][0], mask.impulse[n][1], mask.impulse[n][2]);
+    loads[b].force += force;
+    loads[b].torque += (grid_.centre(c.i, c.j, c.k) - bodies[b].position).cross(force);
+    volume[b] += double(c.weight) * grid_.volume(c.i, c.j, c.k);
+  }
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    const Body& body = bodies[b];
+    Before& m = motion_[b];
+    const double fluid_share = density_ * body.shape.mass_properties().volume / body.mass;
+    const Vec3 momentum = fluid_share * body.angular_momentum();
+    if (m.known && body.motion == Motion::free) {
+      loads[b].force += density_ * volume[b] * (body.velocity - m.velocity) / dt;
+      if (volume[b] > 0.0) loads[b].torque += (momentum - m.angular_momentum) / dt;
+    }
+    m.velocity = body.velocity;
+    m.angular_momentum = momentum;
+    m.known = true;
+    if (volume[b] > 0.0) loads[b].force -= density_ * body.shape.mass_properties().volume * gravity_;
+  }
+}
+
+double ResolvedCoupling::cells_across(const Body& body) const {
+  const Extent e = extent(body);
+  double widest = 0.0;
+  for (int d = 0; d < 3; ++d)
+    for (int i = e.lower[d]; grid_.active(d) && i < e.upper[d]; ++i)
+      widest = std::max(widest, grid_.axis(d).width[static_cast<std::size_t>(i)]);
+  return widest > 0.0 ? body.shape.smallest_feature() / widest : 0.0;
+}
+
+bool ResolvedCoupling::any_inside(std::span<const Body> bodies) const {
+  return std::any_of(bodies.begin(), bodies.end(), [&](const Body& b) { return !extent(b).empty; });
+}
+
+std::vector<double> ResolvedCoupling::state() const {
+  std::vector<double> out;
+  for (const Before& m : motion_) {
+    for (int d = 0; d < 3; ++d) out.push_back(m.velocity[d]);
+    for (int d = 0; d < 3; ++d) out.push_back(m.angular_momentum[d]);
+    out.push_back(m.known);
+  }
+  return out;
+}
+
+void ResolvedCoupling::restore(std::span<const double> state) {
+  motion_.resize(state.size() / 7);
+  for (std::size_t b = 0; b < motion_.size(); ++b) {
+    const double* s = state.data() + 7 * b;
+    motion_[b].velocity = Vec3(s[0], s[1], s[2]);
+    motion_[b].angular_momentum = Vec3(s[3], s[4], s[5]);
+    motion_[b].known = s[6] != 0.0;
+  }
+}
+
+}  // namespace ejecta

@@ -1,0 +1,41 @@
+#pragma once
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "case/case.hpp"
+#include "dem/body.hpp"
+
+namespace ejecta {
+
+/// What became of a body.
+struct Verdict {
+  bool ejected = false;
+  double clearance = 0.0;  ///< m, of the centre above the edge as it passes (negative: below)
+  double velocity_margin =
+      0.0;            ///< m/s: gain of vertical velocity at the jet beyond what just clears the edge
+  double time = 0.0;  ///< s, of passing
+};
+
+/// The dividing plate: its edge lies `distance` behind the jet's axis and `height` above the path of the body
+/// that no air touches. Watches every body until its centre passes the edge.
+class Splitter {
+ public:
+  Splitter(const SplitterSpec& spec, const Vec3& nozzle, double undisturbed_height);
+
+  const Vec3& edge() const { return edge_; }
+  /// To be called after every step, with the positions before it and the time after it.
+  void watch(std::span<const Body> bodies, std::span<const Vec3> before, double time, double dt);
+  const std::optional<Verdict>& verdict(std::size_t body) const { return verdicts_.at(body); }
+  bool all_passed() const;
+  void resize(std::size_t bodies) { verdicts_.resize(bodies); }
+  std::vector<double> state() const;
+  void restore(std::span<const double> state);
+
+ private:
+  Vec3 edge_;
+  double flight_distance_;
+  std::vector<std::optional<Verdict>> verdicts_;
+};
+
+}  // namespace ejecta
