@@ -147,7 +147,7 @@ struct ValveSpec {
 struct JetSpec {
   JetKind kind = JetKind::self_similar;
   Vec3 nozzle{0, 0, 0};         ///< m, centre of the orifice; the jet blows along +z
-  double velocity_decay = 5.9;  ///< B in U_c/U_0 = B d/(z - z0)
+  double velocity_decay = 0.0;  ///< B in U_c/U_0 = B d/(z - z0); 0: what keeps the momentum of the valve
   double spreading = 0.094;     ///< S = r_half/(z - z0)
   double virtual_origin = 0.0;  ///< z0/d
   double inlet_velocity = 0.0;  ///< m/s for "velocity-inlet"; 0: the momentum-equivalent velocity

@@ -91,4 +91,17 @@ Vec3 place_of_interest(const Case& c, const BodySpec& b) {
   return c.jet.nozzle + Vec3(c.launch.offset_along, c.launch.offset_across, c.launch.stand_off);
 }
 
+double cells_across(const Case& c, const BodySpec& b) {
+  const Vec3 at = place_of_interest(c, b), half = half_extent(b);
+  const double reach = half.maxCoeff();
+  double widest = 0.0;
+  for (std::size_t a = 0; a < 3; ++a) {
+    const AxisSpec& axis = c.grid.axis[a];
+    if (axis.cells.size() == 1 && axis.cells[0] == 1) continue;
+    const double x = at[static_cast<int>(a)];
+    widest = std::max(widest, widest_cell(axis, x - reach, x + reach));
+  }
+  return widest > 0.0 ? smallest_feature(b) / widest : 1e300;
+}
+
 }  // namespace ejecta

@@ -7,7 +7,11 @@ using enum Dimension;
 
 std::vector<Key> keys(RunSpec& s) {
   return {
-      {"title", &s.title, none, anything, "What this run is, in a line", ""},
+      {.name = "title",
+       .slot = &s.title,
+       .help = "What this run is, in a line",
+       .unset = "none",
+       .example = "\"10 mm cube over one jet\""},
       {"until", choice(s.until), none, anything, "What ends the run", ""},
       {.name = "end_time",
        .slot = &s.end_time,

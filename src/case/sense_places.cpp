@@ -13,20 +13,6 @@ namespace {
 
 constexpr double cells_needed = 4.0, cells_advised = 8.0;  // across the smallest feature (Hager 2014: 8)
 
-/// Fewest cells across the smallest feature of a body, over the axes that have more than one cell.
-double cells_across(const Case& c, const BodySpec& b) {
-  const Vec3 at = place_of_interest(c, b), half = half_extent(b);
-  const double reach = half.maxCoeff();
-  double widest = 0.0;
-  for (std::size_t a = 0; a < 3; ++a) {
-    const AxisSpec& axis = c.grid.axis[a];
-    if (axis.cells.size() == 1 && axis.cells[0] == 1) continue;
-    const double x = at[static_cast<int>(a)];
-    widest = std::max(widest, widest_cell(axis, x - reach, x + reach));
-  }
-  return widest > 0.0 ? smallest_feature(b) / widest : 1e300;
-}
-
 void check_place(const Case& c, const Box& box, std::size_t n, Findings& found) {
   const BodySpec& b = c.bodies[n];
   const std::string key = fmt::format("body.{}", n),

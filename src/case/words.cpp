@@ -54,8 +54,8 @@ const std::vector<Word>& words(JetKind) {
 
 const std::vector<Word>& words(ValveShape) {
   static const std::vector<Word> list{{"linear", "straight ramps"},
-                                      {"smooth", "cosine ramps"},
-                                      {"exponential", "first-order lag"},
+                                      {"smooth", "ramps x^2 (3 - 2 x), without kinks"},
+                                      {"exponential", "1 - exp(-3 x): 95 % after the rise time"},
                                       {"trace", "opening read from a CSV file"}};
   return list;
 }

@@ -4,25 +4,27 @@
 
 #include "app/cli/commands.hpp"
 #include "app/exit_code.hpp"
-#include "app/version.hpp"
 #include "base/error.hpp"
+#include "output/build_info.hpp"
 
 namespace ejecta {
 
 int run_command_line(int argc, const char* const* argv) {
   CLI::App app(
-      "Ejecta predicts which particles an air-jet sorter ejects: it computes the pulsed air jet, the particles\n"
+      "Ejecta predicts which particles an air-jet sorter ejects: it computes the pulsed air jet, the "
+      "particles\n"
       "and what they do to each other.\n\n"
       "First steps:\n"
       "  ejecta new > my-case.toml      a commented case\n"
       "  ejecta check my-case.toml      what the run will be\n"
       "  ejecta run my-case.toml        runs it",
       "ejecta");
-  app.set_version_flag("--version", std::string(version));
+  app.set_version_flag("--version", std::string(output::version()));
   app.require_subcommand(1);
   app.failure_message(CLI::FailureMessage::help);
   Action action;
-  for (auto* add : {add_run, add_check, add_plan, add_explain, add_new, add_jet, add_validate, add_bench, add_report, add_cache})
+  for (auto* add : {add_run, add_check, add_plan, add_explain, add_new, add_jet, add_validate, add_bench,
+                    add_report, add_cache})
     add(app, action);
   try {
     app.parse(argc, argv);

@@ -2,8 +2,8 @@
 #include <CLI/CLI.hpp>
 #include <functional>
 
-/// The commands of `ejecta`. Each function adds one command with its options, help and an example; when the command
-/// is given, `action` becomes what it does and returns an ExitCode.
+/// The commands of `ejecta`. Each function adds one command with its options, help and an example; when the
+/// command is given, `action` becomes what it does and returns an ExitCode.
 namespace ejecta {
 
 using Action = std::function<int()>;

@@ -15,7 +15,8 @@ struct RunCommand {
 
 void add_run_options(CLI::App& command, RunCommand& o) {
   add_case_options(command, o.input);
-  command.add_option("--out", o.run.out, "Run directory (default: the name of the case with .run)")->type_name("DIR");
+  command.add_option("--out", o.run.out, "Run directory (default: the name of the case with .run)")
+      ->type_name("DIR");
   command.add_option("--threads", o.run.threads, "Threads (default: all cores)")->check(CLI::Range(1, 1024));
   command.add_flag("--force", o.run.force, "Overwrite the run directory");
   command.add_flag("-q,--quiet", o.run.quiet, "Print errors only");
@@ -30,7 +31,8 @@ void add_run(CLI::App& app, Action& action) {
   add_run_options(*command, *o);
   command->add_flag("--resume", o->run.resume, "Continue from the last good checkpoint");
   command->add_flag("--dry-run", o->run.dry_run, "Set everything up, take no step");
-  command->footer("Example:\n  ejecta run cases/paper/10mm-cubic.toml --set valve.supply_pressure=\"600 kPa gauge\"");
+  command->footer(
+      "Example:\n  ejecta run cases/paper/10mm-cubic.toml --set valve.supply_pressure=\"600 kPa gauge\"");
   command->callback([o, &action] { action = [o] { return run_case(load_and_warn(o->input), o->run); }; });
 }
 
@@ -55,7 +57,9 @@ void add_bench(CLI::App& app, Action& action) {
       "bench", "Cell-steps per second on the standard case, per operator, against the machine's limit");
   auto o = std::make_shared<BenchOptions>();
   command->add_option("--threads", o->threads, "Threads (default: all cores)")->check(CLI::Range(1, 1024));
-  command->add_option("--steps", o->steps, "Timed steps")->check(CLI::Range(1, 100000))->capture_default_str();
+  command->add_option("--steps", o->steps, "Timed steps")
+      ->check(CLI::Range(1, 100000))
+      ->capture_default_str();
   command->footer("Example:\n  ejecta bench --threads 2");
   command->callback([o, &action] { action = [o] { return bench(*o); }; });
 }

@@ -1,0 +1,44 @@
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <memory>
+
+#include "app/cli/commands.hpp"
+#include "app/exit_code.hpp"
+#include "app/forecast.hpp"
+#include "base/error.hpp"
+#include "case/load.hpp"
+
+namespace ejecta {
+
+void add_check(CLI::App& app, Action& action) {
+  struct Options {
+    std::vector<std::string> cases, overrides;
+  };
+  CLI::App* command = app.add_subcommand(
+      "check", "What a run will be: cells, steps, time, memory, disk, assumptions; runs nothing");
+  auto o = std::make_shared<Options>();
+  command->add_option("CASE", o->cases, "Case files (.toml)")->required();
+  command->add_option("--set", o->overrides, "Change a key: section.key=value; may be repeated")
+      ->type_name("KEY=VALUE")
+      ->expected(1)
+      ->take_all();
+  command->footer("Example:\n  ejecta check cases/paper/*.toml");
+  command->callback([o, &action] {
+    action = [o] {
+      const double bandwidth = measured_bandwidth();
+      int code = exit_done;
+      for (const std::string& path : o->cases) {
+        try {
+          fmt::print("{}\n", check_report(load_case(path, o->overrides), bandwidth));
+        } catch (const InputError& e) {
+          fmt::print(stderr, "{}\n", e.what());
+          code = exit_bad_input;
+        }
+      }
+      return code;
+    };
+  });
+}
+
+}  // namespace ejecta

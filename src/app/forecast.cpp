@@ -1,0 +1,176 @@
+#include "app/forecast.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "base/parallel.hpp"
+#include "case/expression.hpp"
+#include "case/schema.hpp"
+#include "flow/gas.hpp"
+#include "grid/grid.hpp"
+#include "sorter/nozzle.hpp"
+
+namespace ejecta {
+namespace {
+
+bool has_flow(const Case& c) { return c.flow.solver != FlowSolver::none; }
+bool is_compressible(const Case& c) {
+  return c.flow.solver == FlowSolver::compressible || c.flow.solver == FlowSolver::compressible_piso;
+}
+bool has_jet(const Case& c) { return has_flow(c) && c.boundary[4].type == BoundaryType::jet; }
+
+Grid grid_of(const Case& c) {
+  const auto axis = [&](std::size_t a) {
+    return make_axis(c.grid.axis[a].points, c.grid.axis[a].cells, c.grid.axis[a].grading);
+  };
+  return Grid(axis(0), axis(1), axis(2), c.grid.geometry == Geometry::axisymmetric);
+}
+
+/// Largest speed of a state over the run, sampled at the centre of the box, m/s.
+double fastest_state(const Case& c, const StateSpec& s, const Vec3& at) {
+  if (!s.velocity) return 0.0;
+  constexpr int samples = 64;
+  double fastest = 0.0;
+  for (int n = 0; n <= samples; ++n) {
+    Vec3 u;
+    for (int a = 0; a < 3; ++a)
+      u[a] = Expression((*s.velocity)[static_cast<std::size_t>(a)])(at[0], at[1], at[2],
+                                                                    c.run.end_time * n / samples);
+    fastest = std::max(fastest, u.norm());
+  }
+  return fastest;
+}
+
+double ambient_or(double value, double ambient) { return value > 0.0 ? value : ambient; }
+
+/// Speed on the axis where the jet enters the box, m/s.
+double jet_speed(const Case& c) {
+  const Gas gas{.gamma = c.fluid.gamma, .gas_constant = c.fluid.gas_constant};
+  const NozzleExit exit =
+      nozzle_exit(gas, c.valve.supply_pressure,
+                  ambient_or(c.valve.supply_temperature, c.environment.temperature), c.environment.pressure);
+  const double at_nozzle =
+      c.jet.inlet_velocity > 0.0
+          ? c.jet.inlet_velocity
+          : nozzle_equivalent_velocity(exit, c.valve.discharge_coefficient, c.fluid.density);
+  if (c.jet.kind == JetKind::velocity_inlet) return at_nozzle;
+  const double distance =
+      c.grid.axis[2].points.front() - c.jet.nozzle[2] - c.jet.virtual_origin * c.valve.orifice_diameter;
+  return std::min(at_nozzle, at_nozzle * c.jet.velocity_decay * c.valve.orifice_diameter /
+                                 std::max(distance, c.valve.orifice_diameter));
+}
+
+double fastest_speed(const Case& c, const Grid& grid) {
+  const Vec3 centre = 0.5 * (grid.lower() + grid.upper());
+  double fastest = has_jet(c) ? jet_speed(c) : 0.0;
+  for (const BoundarySpec& face : c.boundary) {
+    fastest = std::max(fastest, fastest_state(c, face.state, centre));
+    for (const PatchSpec& patch : face.patches)
+      fastest = std::max(fastest, fastest_state(c, patch.state, patch.centre));
+  }
+  for (const InitialSpec& region : c.initial)
+    fastest = std::max(fastest, fastest_state(c, region.state, centre));
+  for (const BodySpec& b : c.bodies) fastest = std::max(fastest, b.velocity.norm());
+  const Gas gas{.gamma = c.fluid.gamma, .gas_constant = c.fluid.gas_constant};
+  if (c.flow.solver == FlowSolver::compressible) fastest += gas_sound_speed(gas, c.environment.temperature);
+  return fastest;
+}
+
+// Counted in the solvers: fields held, and field values read or written a cell and step.
+constexpr int fields_incompressible = 24, fields_compressible = 36, fields_turbulence = 8;
+constexpr double traffic_per_field = 12.0;
+
+int held_fields(const Case& c) {
+  return (is_compressible(c) ? fields_compressible : fields_incompressible) +
+         (c.flow.turbulence == TurbulenceModel::laminar ? 0 : fields_turbulence);
+}
+
+double count_of(double interval, double end) {
+  return interval > 0.0 ? std::floor(end / interval) + 1.0 : 0.0;
+}
+
+double disk_space(const Case& c, const Grid& grid, std::int64_t steps) {
+  const double real = sizeof(float), written_fields = c.output.fields.empty()
+                                                          ? 7.0
+                                                          : static_cast<double>(c.output.fields.size()) + 2.0;
+  const double cells = static_cast<double>(grid.cells());
+  double bytes = count_of(c.output.fields_interval, c.run.end_time) * cells * written_fields * real;
+  for (const SliceSpec& s : c.slices)
+    bytes +=
+        count_of(c.output.slices_interval, c.run.end_time) * cells / grid.n(s.axis) * written_fields * real;
+  const double rows = c.output.history_interval > 0.0 ? count_of(c.output.history_interval, c.run.end_time)
+                                                      : static_cast<double>(steps);
+  constexpr double row = 400.0;  // text
+  bytes += rows * row * static_cast<double>(c.bodies.size() + c.probes.size() + 1);
+  const bool checkpoints =
+      c.checkpoint.every_steps > 0 || c.checkpoint.every_time > 0.0 || c.checkpoint.every_wall_time > 0.0;
+  return bytes + (checkpoints ? 2.0 * cells * 8.0 * sizeof(Real) : 0.0);  // the last two are kept
+}
+
+}  // namespace
+
+Forecast forecast(const Case& c) {
+  Forecast f;
+  f.time_step = c.run.time_step.value_or(c.run.time_step_max);
+  if (!has_flow(c)) return f;
+  const Grid grid = grid_of(c);
+  f.cells = grid.cells();
+  f.smallest_volume = grid.smallest_volume();
+  f.largest_volume = grid.largest_volume();
+  f.smallest_cell = 1e300;
+  for (int d = 0; d < 3; ++d) {
+    if (!grid.active(d)) continue;
+    f.smallest_cell = std::min(f.smallest_cell, grid.axis(d).smallest());
+    f.largest_cell = std::max(f.largest_cell, grid.axis(d).largest());
+  }
+  f.fastest = fastest_speed(c, grid);
+  if (!c.run.time_step && f.fastest > 0.0)
+    f.time_step = std::min(c.run.time_step_max, c.run.courant * f.smallest_cell / f.fastest);
+  f.steps =
+      f.time_step < c.run.end_time ? static_cast<std::int64_t>(std::ceil(c.run.end_time / f.time_step)) : 1;
+  f.memory = 20e6 + static_cast<double>(f.cells) * held_fields(c) * sizeof(Real);
+  f.disk = disk_space(c, grid, f.steps);
+  return f;
+}
+
+double expected_seconds(const Case& c, const Forecast& f, double bandwidth) {
+  const double corrections = c.flow.solver == FlowSolver::incompressible ? 0.5 * c.flow.corrections : 1.0;
+  return static_cast<double>(f.steps) * static_cast<double>(f.cells) * held_fields(c) * traffic_per_field *
+         corrections * sizeof(Real) / bandwidth;
+}
+
+double measured_bandwidth() {
+  const int n = 1 << 23;
+  std::vector<float> a(static_cast<std::size_t>(n), 1.0f), b(a.size(), 2.0f);
+  constexpr int chunk = 1 << 16, repeats = 8;
+  float* to = a.data();
+  const float* from = b.data();
+  const auto start = std::chrono::steady_clock::now();
+  for (int r = 0; r < repeats; ++r)
+    for_each_index(n / chunk, [=](int k) {
+      for (int i = k * chunk; i < (k + 1) * chunk; ++i) to[i] = to[i] + 0.5f * from[i];
+    });
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return 3.0 * sizeof(float) * n * repeats / seconds;
+}
+
+std::vector<std::string> assumptions(const Case& original) {
+  Case c = original;
+  const auto in_force = [&](const std::string& section) {
+    if (section == "valve" || section == "jet") return has_jet(c);
+    if (section == "launch") return c.launch.enabled;
+    if (section == "splitter") return c.splitter.enabled;
+    return true;
+  };
+  std::vector<std::string> list;
+  for (const Section& s : sections(c)) {
+    if (s.repeated || !in_force(s.name)) continue;
+    for (const Key& key : s.keys(0))
+      if (key.source.starts_with("assumption"))
+        list.push_back(s.name + "." + key.name + " = " + value_text(key) + "  (" + key.source + ")");
+  }
+  return list;
+}
+
+}  // namespace ejecta

@@ -1,0 +1,34 @@
+#pragma once
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "case/case.hpp"
+
+namespace ejecta {
+
+/// What a run will be, told from the case alone.
+struct Forecast {
+  std::int64_t cells = 0;
+  double smallest_cell = 0.0, largest_cell = 0.0;      ///< m, edges
+  double smallest_volume = 0.0, largest_volume = 0.0;  ///< m3
+  double fastest = 0.0;                                ///< m/s, the speed that limits the step
+  double time_step = 0.0;                              ///< s
+  std::int64_t steps = 0;
+  double memory = 0.0;  ///< bytes
+  double disk = 0.0;    ///< bytes
+};
+Forecast forecast(const Case& c);
+
+/// Seconds that the steps take at the rate (bytes/s) at which this machine moves data.
+double expected_seconds(const Case& c, const Forecast& f, double bandwidth);
+/// Measured in about a tenth of a second, bytes/s.
+double measured_bandwidth();
+
+/// The assumptions in force: keys whose default is an assumption and that this case uses, with their values.
+std::vector<std::string> assumptions(const Case& c);
+
+/// All of it as the text of `ejecta check`.
+std::string check_report(const Case& c, double bandwidth);
+
+}  // namespace ejecta

@@ -1,0 +1,160 @@
+#include "app/validation.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+
+#include "app/exit_code.hpp"
+#include "base/error.hpp"
+#include "case/load.hpp"
+
+namespace ejecta {
+namespace {
+
+std::string reference_words(const ExpectSpec& e) {
+  if (!e.text.empty()) return e.text;
+  std::string words;
+  if (e.tolerance || e.relative_tolerance) words = fmt::format("{:.6g}", e.reference);
+  if (e.at_least) words += fmt::format("{}>= {:.6g}", words.empty() ? "" : ", ", *e.at_least);
+  if (e.at_most) words += fmt::format("{}<= {:.6g}", words.empty() ? "" : ", ", *e.at_most);
+  return words;
+}
+
+nlohmann::json read_result(const std::filesystem::path& run_directory) {
+  std::ifstream file(run_directory / "result.json");
+  if (!file) throw Error(fmt::format("{}: no result.json", run_directory.string()));
+  return nlohmann::json::parse(file);
+}
+
+}  // namespace
+
+Comparison compare(const ExpectSpec& e, const nlohmann::json& result) {
+  Comparison c{.quantity = e.quantity,
+               .computed = "missing",
+               .reference = reference_words(e),
+               .error = "",
+               .source = e.source};
+  const nlohmann::json::json_pointer pointer(e.quantity);
+  if (!result.contains(pointer)) return c;
+  const nlohmann::json& value = result.at(pointer);
+  if (!e.text.empty()) {
+    c.computed = value.is_string() ? value.get<std::string>() : value.dump();
+    c.pass = c.computed == e.text;
+    return c;
+  }
+  if (!value.is_number()) {
+    c.computed = value.dump();
+    return c;
+  }
+  const double computed = value.get<double>(), difference = computed - e.reference;
+  c.computed = fmt::format("{:.6g}", computed);
+  const bool about_reference = e.tolerance || e.relative_tolerance;
+  if (about_reference)
+    c.error = e.reference != 0.0 ? fmt::format("{:+.2f} %", 100.0 * difference / std::abs(e.reference))
+                                 : fmt::format("{:+.3g}", difference);
+  c.pass = std::isfinite(computed) && (!e.tolerance || std::abs(difference) <= *e.tolerance) &&
+           (!e.relative_tolerance || std::abs(difference) <= *e.relative_tolerance * std::abs(e.reference)) &&
+           (!e.at_least || computed >= *e.at_least) && (!e.at_most || computed <= *e.at_most);
+  return c;
+}
+
+Case refined(const Case& original, double factor) {
+  Case c = original;
+  for (AxisSpec& axis : c.grid.axis) {
+    if (axis.cells.size() == 1 && axis.cells[0] == 1) continue;
+    for (int& n : axis.cells) {
+      const double cells = n * factor;
+      if (std::abs(cells - std::round(cells)) > 1e-9 || cells < 1.0)
+        throw InputError(fmt::format("{}: {} cells times {} is no whole number of cells", c.path, n, factor));
+      n = static_cast<int>(std::round(cells));
+    }
+  }
+  if (c.convergence.scale_time_step && c.run.time_step) *c.run.time_step /= factor;
+  return c;
+}
+
+nlohmann::json with_orders(const std::vector<nlohmann::json>& results, const std::vector<double>& factors) {
+  nlohmann::json combined = results.back();
+  for (const nlohmann::json& r : results)
+    combined["levels"].push_back(r.value("errors", nlohmann::json::object()));
+  const nlohmann::json finest = results.back().value("errors", nlohmann::json::object());
+  for (const auto& [name, unused] : finest.items()) {
+    for (std::size_t i = 1; i < results.size(); ++i) {
+      const auto error = [&](std::size_t level) {
+        const nlohmann::json& e = combined["levels"][level];
+        return e.contains(name) && e[name].is_number() ? e[name].get<double>() : std::nan("");
+      };
+      const double order = std::log(error(i - 1) / error(i)) / std::log(factors[i] / factors[i - 1]);
+      combined["observed_orders"][name].push_back(order);
+      combined["observed_order"][name] = order;
+    }
+  }
+  return combined;
+}
+
+bool Validation::pass() const {
+  return exit_code == exit_done &&
+         std::all_of(comparisons.begin(), comparisons.end(), [](const Comparison& c) { return c.pass; });
+}
+
+namespace {
+
+void run_and_compare(const std::string& path, const RunOptions& options, const Runner& run, Validation& v) {
+  const Case c = load_case(path);
+  if (c.expects.empty()) throw InputError(fmt::format("{}: no [[expect]], nothing to compare with", path));
+  const bool series = !c.convergence.factors.empty();
+  const std::vector<double> factors = series ? c.convergence.factors : std::vector<double>{1.0};
+  std::vector<nlohmann::json> results;
+  for (double factor : factors) {
+    RunOptions one = options;
+    const std::string level = series ? fmt::format("-x{:g}", factor) : "";
+    one.out = (std::filesystem::path(options.out) / fmt::format("{}{}.run", v.name, level)).string();
+    v.exit_code = run(series ? refined(c, factor) : c, one);
+    if (v.exit_code != exit_done) return;
+    results.push_back(read_result(one.out));
+  }
+  const nlohmann::json result = series ? with_orders(results, factors) : results.front();
+  for (const ExpectSpec& e : c.expects) v.comparisons.push_back(compare(e, result));
+}
+
+}  // namespace
+
+Validation validate_case(const std::string& path, const RunOptions& options, const Runner& run) {
+  Validation v{
+      .name = std::filesystem::path(path).stem().string(), .exit_code = 0, .message = "", .comparisons = {}};
+  const auto failed = [&](int code, const std::exception& e) {
+    v.exit_code = code;
+    v.message = e.what();
+  };
+  try {
+    run_and_compare(path, options, run, v);
+  } catch (const InputError& e) {
+    failed(exit_bad_input, e);
+  } catch (const DivergedError& e) {
+    failed(exit_diverged, e);
+  } catch (const std::exception& e) {
+    failed(exit_failure, e);
+  }
+  return v;
+}
+
+std::string validation_table(const std::vector<Validation>& list) {
+  std::string text = fmt::format("{:<44} {:>14} {:>16} {:>11}  {:<4}  {}\n", "quantity", "computed",
+                                 "reference", "error", "pass", "source");
+  int failed = 0;
+  for (const Validation& v : list) {
+    failed += v.pass() ? 0 : 1;
+    text += fmt::format("{}{}\n", v.name,
+                        v.exit_code == exit_done
+                            ? ""
+                            : fmt::format(": failed with exit code {}\n{}", v.exit_code, v.message));
+    for (const Comparison& c : v.comparisons)
+      text += fmt::format("  {:<42} {:>14} {:>16} {:>11}  {:<4}  {}\n", c.quantity, c.computed, c.reference,
+                          c.error, c.pass ? "yes" : "NO", c.source);
+  }
+  return text + fmt::format("{} of {} cases pass\n", static_cast<int>(list.size()) - failed, list.size());
+}
+
+}  // namespace ejecta

@@ -1,0 +1,55 @@
+#pragma once
+#include <filesystem>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "app/simulation.hpp"
+#include "case/case.hpp"
+
+namespace ejecta {
+
+/// One [[expect]] against one result.
+struct Comparison {
+  std::string quantity, computed, reference, error, source;
+  bool pass = false;
+};
+/// Every criterion that is given must hold; a missing quantity, null or NaN never passes.
+Comparison compare(const ExpectSpec& expect, const nlohmann::json& result);
+
+/// The case with the cells of every axis times `factor` (an axis of one cell stays) and, if [convergence]
+/// says so, a fixed time step divided by it. Throws InputError when a block would not get a whole number of
+/// cells.
+Case refined(const Case& c, double factor);
+
+/// Adds to the finest result what the series shows: "levels" (the "errors" of each grid), "observed_orders"
+/// (between successive grids) and "observed_order" (between the two finest), by the names under "errors":
+/// order = log(e_coarse / e_fine) / log(factor ratio).
+nlohmann::json with_orders(const std::vector<nlohmann::json>& results, const std::vector<double>& factors);
+
+using Runner = std::function<int(const Case&, const RunOptions&)>;
+
+struct Validation {
+  std::string name;
+  int exit_code = 0;    ///< of the run
+  std::string message;  ///< why it failed
+  std::vector<Comparison> comparisons;
+  bool pass() const;
+};
+/// Runs one case (all its grids) below `options.out` and compares it. Errors are kept in the result: the
+/// cases after it are run all the same.
+Validation validate_case(const std::string& path, const RunOptions& options, const Runner& run);
+
+/// The case files meant by `names`: a file, a directory, or part of the name of a shipped case; none: all
+/// shipped ones that expect something. Throws InputError for a name that means nothing.
+std::vector<std::filesystem::path> validation_cases(const std::vector<std::string>& names,
+                                                    const std::filesystem::path& shipped);
+/// Where validation/ and verification/ are: $EJECTA_SHARE, the source tree, or share/ejecta beside the
+/// program.
+std::filesystem::path shipped_cases();
+
+/// Quantity, computed, reference, error, pass, source; a line each.
+std::string validation_table(const std::vector<Validation>& list);
+
+}  // namespace ejecta

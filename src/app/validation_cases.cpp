@@ -1,0 +1,69 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <fstream>
+
+#include "app/validation.hpp"
+#include "base/error.hpp"
+
+namespace ejecta {
+namespace {
+
+using std::filesystem::path;
+
+std::vector<path> toml_files(const path& directory) {
+  std::vector<path> list;
+  if (!std::filesystem::is_directory(directory)) return list;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(directory))
+    if (entry.is_regular_file() && entry.path().extension() == ".toml") list.push_back(entry.path());
+  std::sort(list.begin(), list.end());
+  return list;
+}
+
+bool expects_something(const path& file) {
+  std::ifstream stream(file);
+  for (std::string line; std::getline(stream, line);)
+    if (line.starts_with("[[expect]]")) return true;
+  return false;
+}
+
+}  // namespace
+
+std::vector<path> validation_cases(const std::vector<std::string>& names, const path& shipped) {
+  std::vector<path> all;
+  for (const char* folder : {"verification", "validation"})
+    for (const path& file : toml_files(shipped / folder))
+      if (expects_something(file)) all.push_back(file);
+  if (names.empty()) return all;
+  std::vector<path> chosen;
+  for (const std::string& name : names) {
+    if (std::filesystem::is_regular_file(name)) {
+      chosen.emplace_back(name);
+      continue;
+    }
+    const std::size_t before = chosen.size();
+    const std::vector<path> below = toml_files(name);
+    std::copy_if(below.begin(), below.end(), std::back_inserter(chosen), expects_something);
+    if (below.empty())
+      std::copy_if(all.begin(), all.end(), std::back_inserter(chosen), [&](const path& file) {
+        return file.lexically_relative(shipped).string().find(name) != std::string::npos;
+      });
+    if (chosen.size() == before)
+      throw InputError(
+          fmt::format("\"{}\" is no case file, no directory of cases and in no name of a shipped case ({})",
+                      name, shipped.string()));
+  }
+  return chosen;
+}
+
+path shipped_cases() {
+  if (const char* share = std::getenv("EJECTA_SHARE")) return share;
+  const path source = EJECTA_SOURCE_DIR;
+  if (std::filesystem::is_directory(source / "verification")) return source;
+  std::error_code ignored;
+  return std::filesystem::read_symlink("/proc/self/exe", ignored).parent_path().parent_path() / "share" /
+         "ejecta";
+}
+
+}  // namespace ejecta

@@ -1,0 +1,36 @@
+#include "case/documented.hpp"
+
+#include <fmt/format.h>
+
+#include "case/schema.hpp"
+
+namespace ejecta {
+
+Case documented_case() {
+  Case c;
+  for (const Section& s : sections(c))
+    if (s.repeated) s.append();
+  return c;
+}
+
+std::vector<Section> documented_sections(Case& documented) {
+  std::vector<Section> shown = sections(documented);
+  std::erase_if(shown, [](const Section& s) {
+    return s.name.starts_with("boundary.") && !s.name.starts_with("boundary.x_min");
+  });
+  return shown;
+}
+
+std::string header(const Section& s) {
+  if (s.name == "boundary.x_min") return "[boundary.x_min] ... [boundary.z_max]";
+  return fmt::format(fmt::runtime(s.repeated ? "[[{}]]" : "[{}]"), s.name);
+}
+
+std::string default_words(const Key& key) {
+  if (key.required) return "required";
+  if (!key.unset.empty()) return key.unset;
+  const std::string value = value_text(key);
+  return value.empty() ? "none" : value;
+}
+
+}  // namespace ejecta

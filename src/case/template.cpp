@@ -1,0 +1,89 @@
+#include "case/template.hpp"
+
+#include <fmt/format.h>
+
+#include <map>
+#include <memory>
+
+#include "base/error.hpp"
+#include "base/text.hpp"
+#include "case/documented.hpp"
+#include "case/schema.hpp"
+#include "case/template_texts.hpp"
+#include "case/toml.hpp"
+
+namespace ejecta {
+namespace {
+
+const Node* find(const Node& root, const std::string& name) {
+  const Node* node = &root;
+  for (std::size_t start = 0; node && start < name.size();) {
+    const std::size_t dot = std::min(name.find('.', start), name.size());
+    node = node->is_table() ? node->find(name.substr(start, dot - start)) : nullptr;
+    start = dot + 1;
+  }
+  return node;
+}
+
+/// What may stand behind "key = ": for a key left out, its default or else an example.
+std::string default_value(const Key& key) {
+  const std::string value = key.unset.empty() ? value_text(key) : "";
+  return value.empty() ? example(key) : value;
+}
+
+std::string table_text(const Section& s, const Node& table) {
+  std::string text = fmt::format("\n# {}\n", s.help);
+  text += fmt::format(fmt::runtime(s.repeated ? "[[{}]]\n" : "[{}]\n"), s.name);
+  for (const Key& key : s.keys(0)) {
+    const Node* node = table.find(key.name);
+    const std::string assignment = node ? fmt::format("{} = {}", key.name, node->place.text())
+                                        : fmt::format("# {} = {}", key.name, default_value(key));
+    const std::string unset = node || key.unset.empty() ? "" : fmt::format(" (default: {})", key.unset);
+    text += fmt::format("{:<52}  # {}{}\n", assignment, key.help, unset);
+  }
+  return text;
+}
+
+}  // namespace
+
+const std::vector<Word>& template_kinds() {
+  static const std::vector<Word> kinds = [] {
+    std::vector<Word> list;
+    for (const TemplateText& t : template_texts()) list.push_back({t.kind, t.help});
+    return list;
+  }();
+  return kinds;
+}
+
+std::string case_template(const std::string& kind) {
+  std::vector<std::string> known;
+  for (const TemplateText& t : template_texts()) {
+    known.push_back(t.kind);
+    if (t.kind != kind) continue;
+    std::vector<Problem> problems;
+    const Node root = parse_toml(std::make_shared<Source>(Source{kind, t.text}), problems);
+    if (!problems.empty()) throw Error(render(problems));
+    std::string text = fmt::format(
+        "# {}\n# `ejecta explain` lists all keys, `ejecta check FILE` looks at this file, `ejecta run FILE` "
+        "runs it.\n",
+        t.help);
+    Case c = documented_case();
+    std::vector<std::string> unused;
+    for (const Section& s : sections(c)) {
+      const Node* node = find(root, s.name);
+      if (!node && !s.name.starts_with("boundary.") && !s.name.starts_with("grid."))
+        unused.push_back(header(s));
+      if (!node || (!s.repeated && !node->is_table())) continue;
+      if (!s.repeated) text += table_text(s, *node);
+      else
+        for (const Node& element : node->children) text += table_text(s, element);
+    }
+    return text + fmt::format("\n# Other sections: {}\n", joined(unused));
+  }
+  const std::string close = nearest(kind, known);
+  throw InputError(fmt::format("no kind of case is called \"{}\"{} (known: {})", kind,
+                               close.empty() ? "" : fmt::format(", nearest is \"{}\"", close),
+                               joined(known)));
+}
+
+}  // namespace ejecta

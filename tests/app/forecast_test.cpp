@@ -1,0 +1,70 @@
+#include "app/forecast.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "case/load.hpp"
+#include "case/template.hpp"
+
+using namespace ejecta;
+using testing::Contains;
+using testing::HasSubstr;
+using testing::Not;
+
+namespace {
+
+Case ejection(const std::vector<std::string>& overrides = {}) {
+  return parse_case(case_template("ejection"), "ejection.toml", overrides);
+}
+
+TEST(Forecast, CountsCells) {
+  const Forecast f = forecast(ejection());
+  EXPECT_EQ(f.cells, 60 * 60 * 80);
+  EXPECT_NEAR(f.smallest_cell, 1e-3, 1e-12);
+}
+
+/// 700 kPa gauge is 879 m/s at the nozzle; B d / z at 40 mm makes 5.9 * 1.8 / 40 of it.
+TEST(Forecast, TheJetLimitsTheStep) {
+  const Forecast f = forecast(ejection());
+  EXPECT_NEAR(f.fastest, 879.0 * 5.9 * 1.8 / 40.0, 1.0);
+  EXPECT_NEAR(f.time_step, 1e-3 / f.fastest, 1e-9);
+  EXPECT_NEAR(static_cast<double>(f.steps), 0.15 / f.time_step, 1.0);
+}
+
+TEST(Forecast, MemoryAndTimeGrowWithTheCells) {
+  const Case coarse = ejection(), fine = ejection({"grid.z.cells=[160]"});
+  EXPECT_GT(forecast(fine).memory, 1.5 * forecast(coarse).memory);
+  EXPECT_GT(expected_seconds(fine, forecast(fine), 1e10),
+            2.0 * expected_seconds(coarse, forecast(coarse), 1e10));
+}
+
+TEST(Forecast, FieldOutputNeedsDisk) {
+  EXPECT_GT(forecast(ejection({"output.fields_interval=1 ms"})).disk,
+            forecast(ejection()).disk + 150 * 288000 * 4.0);
+}
+
+TEST(Forecast, AssumptionsInForceAreSpeltOut) {
+  EXPECT_THAT(assumptions(ejection()), Contains(HasSubstr("valve.orifice_diameter = \"1.8 mm\"")));
+  EXPECT_THAT(assumptions(ejection()), Contains(HasSubstr("splitter.height")));
+  EXPECT_THAT(assumptions(parse_case(case_template("cavity"), "cavity")), Not(Contains(HasSubstr("valve"))));
+}
+
+TEST(CheckReport, SaysWhatTheRunWillBe) {
+  const std::string text = check_report(ejection(), 1e10);
+  EXPECT_THAT(text, HasSubstr("288000"));
+  EXPECT_THAT(text, HasSubstr("10.0 cells across"));
+  EXPECT_THAT(text, HasSubstr("assumptions in force"));
+}
+
+TEST(CheckReport, APulseThatMissesIsAWarningWithTheTwoTimes) {
+  const std::string text = check_report(ejection({"valve.opens_at=60 ms"}), 1e10);
+  EXPECT_THAT(text, HasSubstr("warning: valve.opens_at: the pulse misses \"cube\" altogether"));
+  EXPECT_THAT(text, HasSubstr("the jet blows from 60 ms to 69 ms"));
+}
+
+TEST(Bandwidth, IsThatOfAComputer) {
+  EXPECT_GT(measured_bandwidth(), 1e8);
+  EXPECT_LT(measured_bandwidth(), 1e13);
+}
+
+}  // namespace
