@@ -2,7 +2,7 @@ import uPlot from "uplot";
 import "uplot/dist/uPlot.min.css";
 import { isDark } from "./colour";
 import { h } from "./dom";
-import { short, unitText } from "./format";
+import { fixed, short, unitText } from "./format";
 import type { Player } from "./player";
 
 export interface Series {
@@ -34,17 +34,39 @@ function summary(spec: ChartSpec): string {
   }).join("; ");
 }
 
+/** Ticks with as many decimals as their spacing needs. */
+function tickTexts(_plot: uPlot, list: number[], _axis: number, _space: number, step: number): string[] {
+  if (step < 1e-4) return list.map((v) => short(v, 2));
+  let decimals = 0;
+  while (decimals < 9 && Math.abs(step * 10 ** decimals - Math.round(step * 10 ** decimals)) > 1e-6) ++decimals;
+  return list.map((v) => (Math.abs(v) >= 1e5 ? short(v) : fixed(v, decimals)));
+}
+
+/** A prefix that makes the largest value readable: newton metres become micronewton metres. */
+export function prefixFor(largest: number, unit: string): { factor: number; unit: string } {
+  const plain = { factor: 1, unit };
+  if (!/^(N|Pa|J|W)\b/.test(unit) || !(largest > 0) || (largest >= 0.1 && largest < 1e4)) return plain;
+  const power = Math.min(2, Math.max(-3, Math.floor(Math.log10(largest) / 3)));
+  const prefix = ["n", "\u00b5", "m", "", "k", "M"][power + 3]!;
+  return { factor: 10 ** (-3 * power), unit: prefix + unit };
+}
+
 export function chart(spec: ChartSpec, height = 210): HTMLElement {
   const holder = h("div", { class: "chart", role: "img", "aria-label": `${spec.title}, ${spec.yLabel} over ${spec.xLabel}. ${summary(spec)}.` });
   const figure = h("figure", { class: "chart-figure" }, h("figcaption", {}, spec.title), holder);
   let plot: uPlot | undefined;
   const marker = h("div", { class: "now-line", "aria-hidden": "true" });
 
+  /** The legend reads the values at the player's time unless the mouse points elsewhere. */
+  const showNow = (u: uPlot): void => {
+    if (spec.player) u.setLegend({ idx: u.valToIdx(spec.player.time * 1e3) }, false);
+  };
   const moveMarker = (): void => {
     if (!plot || !spec.player) return;
     const x = plot.valToPos(spec.player.time * 1e3, "x");
     marker.style.display = x >= 0 && x <= plot.over.clientWidth ? "block" : "none";
     marker.style.transform = `translateX(${x}px)`;
+    if ((plot.cursor.left ?? -1) < 0) showNow(plot);
   };
 
   const build = (): void => {
@@ -54,20 +76,24 @@ export function chart(spec: ChartSpec, height = 210): HTMLElement {
     const dark = isDark();
     const ink = dark ? "#a9b6c6" : "#55606e";
     const grid = { stroke: dark ? "rgba(255,255,255,0.08)" : "rgba(20,30,45,0.09)", width: 1 };
-    const axis = { stroke: ink, grid, ticks: { ...grid, size: 4 }, font: FONT, labelFont: FONT };
+    const axis = { stroke: ink, grid, ticks: { ...grid, size: 4 }, font: FONT, labelFont: FONT, values: tickTexts };
     plot = new uPlot({
       width, height,
       scales: { x: { time: false } },
       legend: { live: true },
+      hooks: { draw: [moveMarker], setLegend: [(u) => u.legend.idx == null && showNow(u)] },
       cursor: { sync: spec.player ? { key: "time" } : undefined, drag: { x: true, y: false }, points: { size: 6 } },
       axes: [
         { ...axis, label: spec.xLabel, labelSize: 18, size: 30 },
-        { ...axis, label: spec.yLabel, labelSize: 18, size: 54, values: (_u, list) => list.map((v) => short(v, 3)) },
+        {
+          ...axis, label: spec.yLabel, labelSize: 20,
+          size: (_u, texts) => 16 + 7 * Math.max(2, ...(texts ?? []).map((text) => text.length)),
+        },
       ],
       series: [
         { label: spec.xLabel, value: (_u, v) => (v == null ? "\u2013" : short(v, 4)) },
         ...spec.series.map((s): uPlot.Series => ({
-          label: s.label, stroke: s.colour(dark), width: 1.6, dash: s.dashed ? [6, 4] : undefined, points: { show: false },
+          label: s.label, stroke: s.colour(dark), width: 1.6, dash: s.dashed ? [6, 4] : undefined, points: { show: false }, pxAlign: 0,
           value: (_u, v) => (v == null ? "\u2013" : short(v, 4)),
         })),
       ],
@@ -78,16 +104,12 @@ export function chart(spec: ChartSpec, height = 210): HTMLElement {
         const box = plot!.over.getBoundingClientRect();
         spec.player!.seek(plot!.posToVal(event.clientX - box.left, "x") / 1e3);
       });
-      moveMarker();
     }
   };
 
   new ResizeObserver(() => {
     if (!plot) build();
-    else if (Math.abs(plot.width - holder.clientWidth) > 1) {
-      plot.setSize({ width: holder.clientWidth, height });
-      moveMarker();
-    }
+    else if (Math.abs(plot.width - holder.clientWidth) > 1) plot.setSize({ width: holder.clientWidth, height });
   }).observe(holder);
   document.addEventListener("themechange", build);
   spec.player?.onChange(moveMarker);

@@ -35,11 +35,18 @@ function paintSwatches(): void {
     swatch.style.setProperty("--colour", bodyColour(Number(swatch.dataset["body"]), isDark()));
 }
 
-/** From the first to the last moment of any run; starts where the air pushes hardest. */
+/** From the first to the last moment of any run; starts where the air pushes hardest on a body, or blows fastest. */
 function makePlayer(runs: Run[]): Player {
   const times = runs.flatMap((run) => [
     ...(run.replay?.frames.map((f) => f.time) ?? []), ...[...run.history.values()].flatMap((t) => [t.values[0]![0] ?? 0, t.values[0]!.at(-1) ?? 0])]);
   const player = new Player(times.length ? Math.min(...times) : 0, times.length ? Math.max(...times) : 1);
+  let fastest = 0;
+  for (const frame of runs[0]?.replay?.frames ?? [])
+    for (const slice of frame.slices.values())
+      if (slice.fullScale > fastest) {
+        fastest = slice.fullScale;
+        player.time = frame.time;
+      }
   let strongest = 0;
   for (const [name, table] of runs[0]?.history ?? []) {
     if (!name.startsWith("body-")) continue;
@@ -88,7 +95,7 @@ function page(runs: Run[]): HTMLElement {
   const grid = (charts: HTMLElement[]): HTMLElement | null =>
     charts.length > 0 ? h("div", { class: "chart-grid" }, ...charts) : null;
 
-  add("path", "Path", "Side view to scale, bodies drawn every fourteenth of the time.", pathView(runs, player));
+  add("path", "Path", "Side view to scale. Faint outlines are equally far apart in time.", pathView(runs, player));
   add("replay", "Replay", "", replayView(runs, player));
   add("motion", "Motion", "x along the belt, y across it, z up and along the jet.", motionCharts(runs, player));
   add("jet", "Jet", "", grid([...profileCharts(runs), ...seriesCharts(runs, player, (n) => n.startsWith("probe-"))]));

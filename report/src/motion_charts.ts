@@ -1,4 +1,4 @@
-import { chart, axisLabel, type Series } from "./charts";
+import { chart, axisLabel, prefixFor, type Series } from "./charts";
 import { bodyColour, componentColour } from "./colour";
 import { columnOf, type Run, type Table } from "./data";
 import { h } from "./dom";
@@ -29,6 +29,19 @@ function resampled(times: ArrayLike<number>, table: Table, values: Float32Array)
   });
 }
 
+/** Series and the unit they are shown in. */
+function inReadableUnit(series: Series[], unit: string): { series: Series[]; unit: string } {
+  let largest = 0;
+  for (const s of series) for (let n = 0; n < s.values.length; ++n) largest = Math.max(largest, Math.abs(s.values[n] ?? 0));
+  const scale = prefixFor(largest, unit);
+  if (scale.factor === 1) return { series, unit };
+  const scaled = (v: number | null): number | null => (v == null ? null : v * scale.factor);
+  return {
+    unit: scale.unit,
+    series: series.map((s) => ({ ...s, values: Array.from(s.values as ArrayLike<number | null>, scaled) as number[] })),
+  };
+}
+
 /** Velocity, force, torque and spin of one body over time; further runs dashed. */
 function chartsOfBody(name: string, runs: Run[], player: Player): HTMLElement {
   const found = runs.flatMap((run) => {
@@ -51,8 +64,11 @@ function chartsOfBody(name: string, runs: Run[], player: Player): HTMLElement {
           dashed: r > 0,
         }];
       }));
-    if (series.length > 0)
-      grid.append(chart({ title, xLabel: "time [ms]", yLabel: axisLabel(prefix.replace("_", " "), unit), x, series, player }));
+    if (series.length === 0) continue;
+    const shown = inReadableUnit(series, unit);
+    grid.append(chart({
+      title, xLabel: "time [ms]", yLabel: axisLabel(prefix.replace("_", " "), shown.unit), x, series: shown.series, player,
+    }));
   }
   return grid;
 }
@@ -100,10 +116,11 @@ export function seriesCharts(runs: Run[], player: Player, wanted: (name: string)
           dashed: r > 0,
         }];
       }));
-      const quantity = columns.length === 1 ? columns[0]!.name.replace(/_/g, " ") : "";
+      const shown = inReadableUnit(series, unit);
+      const quantity = columns.length === 1 ? columns[0]!.name.replace(/_/g, " ") : "value";
       return chart({
-        title: words(name.replace(/^probe-/, "probe ")), xLabel: "time [ms]",
-        yLabel: quantity ? axisLabel(quantity, unit) : `[${unit}]`, x, series, player,
+        title: `${words(name.replace(/^probe-/, "probe "))}${columns.length === 1 ? `: ${quantity}` : ""}`, xLabel: "time [ms]",
+        yLabel: axisLabel(quantity, shown.unit), x, series: shown.series, player,
       });
     });
   });

@@ -38,7 +38,7 @@ function tracksOf(runs: Run[]): Track[] {
       tracks.push({
         label: runs.length > 1 ? `${name} (${run.name})` : name,
         name, run, body, points,
-        colour: tracks.length,
+        colour: body,
         dashed: r > 0,
         undisturbed: (run.replay?.undisturbed[body] ?? []).map((p): Point => [p[0], p[2]]),
         clearance: typeof clearance === "number" ? clearance : undefined,
@@ -47,6 +47,8 @@ function tracksOf(runs: Run[]): Track[] {
   });
   return tracks;
 }
+
+const millimetres = (metres: number): string => `${metres > 0 ? "+" : ""}${fixed(metres * 1e3, 1)} mm`;
 
 /** Height of a track where it passes `x`, on its way out. */
 function heightAt(points: Point[], x: number): number | undefined {
@@ -71,8 +73,12 @@ export function pathView(runs: Run[], player: Player): HTMLElement | null {
   for (const n of replay?.nozzles ?? []) all.push([n.position[0], n.position[2] - 0.006]);
   if (replay) for (const corner of replay.domain) all.push([corner[0], corner[2]]);
   const finite = all.filter((p) => p.every(Number.isFinite));
-  const [x0, x1] = [Math.min(...finite.map((p) => p[0])), Math.max(...finite.map((p) => p[0]))];
-  const [z0, z1] = [Math.min(...finite.map((p) => p[1])), Math.max(...finite.map((p) => p[1]))];
+  const range = (d: 0 | 1): Point => {
+    const [low, high] = finite.reduce((r, p) => [Math.min(r[0], p[d]), Math.max(r[1], p[d])], [Infinity, -Infinity] as Point);
+    const pad = 0.02 * (high - low);
+    return [low - pad, high + pad];
+  };
+  const [[x0, x1], [z0, z1]] = [range(0), range(1)];
 
   const holder = h("div", { class: "path-view" });
   const margin = { left: 54, right: 18, top: 14, bottom: 46 };
@@ -101,7 +107,7 @@ export function pathView(runs: Run[], player: Player): HTMLElement | null {
       "aria-label": `Side view of the paths of ${tracks.map((t) => t.label).join(", ")}; x along the belt, z up, in millimetres.`,
     });
     const axes = svg("g", { class: "axes" });
-    for (const x of ticks(x0 * 1e3, x1 * 1e3, Math.max(4, width / 110)))
+    for (const x of ticks(x0 * 1e3, x1 * 1e3, Math.max(4, width / 90)))
       axes.append(
         svg("line", { x1: X(x / 1e3), x2: X(x / 1e3), y1: margin.top, y2: Z(z0), class: "grid" }),
         svg("text", { x: X(x / 1e3), y: Z(z0) + 18, "text-anchor": "middle" }, fixed(x, 0)));
@@ -139,7 +145,7 @@ export function pathView(runs: Run[], player: Player): HTMLElement | null {
       if (t.undisturbed.length > 1)
         root.append(svg("path", { d: line(t.undisturbed), class: "undisturbed", stroke }));
       root.append(svg("path", { d: line(t.points), class: "track", stroke, "stroke-dasharray": t.dashed && "8 4" }));
-      if (t.run.replay)
+      if (t.run.replay && !t.dashed)
         for (let n = 0; n <= 14; ++n)
           root.append(svg("path", {
             d: outline(t, player.start + (n / 14) * (player.end - player.start)), class: "strobe", fill: stroke, stroke,
@@ -152,10 +158,14 @@ export function pathView(runs: Run[], player: Player): HTMLElement | null {
         if (z === undefined || t.clearance === undefined) return;
         const x = X(edge[0]) - 10 - 12 * n;
         const stroke = bodyColour(t.colour, dark);
-        root.append(
-          svg("path", { d: `M${x - 4} ${Z(z)}h8M${x} ${Z(z)}V${Z(edge[2])}m-4 0h8`, class: "dimension", stroke }),
-          svg("text", { x: x - 8, y: (Z(z) + Z(edge[2])) / 2 + 4 + 15 * n, "text-anchor": "end", class: "dimension-text", fill: stroke },
-            `${fixed(t.clearance * 1e3, 1)} mm`));
+        root.append(svg("path", {
+          d: `M${x - 4} ${Z(z)}h8M${x} ${Z(z)}V${Z(edge[2])}m-4 0h8`, class: "dimension", stroke,
+          "stroke-dasharray": t.dashed && "3 2",
+        }));
+        if (tracks.length === 1)
+          root.append(svg("text", {
+            x: x - 10, y: (Z(z) + Z(edge[2])) / 2 + 4, "text-anchor": "end", class: "dimension-text", style: `fill:${stroke}`,
+          }, millimetres(t.clearance)));
       });
 
     const now = tracks.map((t) => svg("path", { class: "now", fill: bodyColour(t.colour, dark) }));
@@ -171,7 +181,8 @@ export function pathView(runs: Run[], player: Player): HTMLElement | null {
 
   const key = h("ul", { class: "key" });
   for (const t of tracks)
-    key.append(h("li", {}, h("span", { class: t.dashed ? "swatch dashed" : "swatch", "data-body": t.colour }), t.label));
+    key.append(h("li", {}, h("span", { class: t.dashed ? "swatch dashed" : "swatch", "data-body": t.colour }), t.label,
+      t.clearance === undefined ? null : h("strong", {}, ` ${millimetres(t.clearance)}`), t.clearance === undefined ? null : " from the edge"));
   if (tracks.some((t) => t.undisturbed.length > 1))
     key.append(h("li", {}, h("span", { class: "swatch dotted" }), "without air"));
   return h("figure", {}, holder, h("figcaption", {}, key));

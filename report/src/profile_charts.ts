@@ -41,8 +41,10 @@ export function profileCharts(runs: Run[]): HTMLElement[] {
       const position = columnOf(table, "position");
       if (!position || blocks.length === 0) continue;
       const count = Math.min(MOST_TIMES, blocks.length);
+      // The first moment is that of air at rest; when there are many, it is left out.
+      const start = count < blocks.length ? 1 : 0;
       const chosen = Array.from({ length: count }, (_, n) =>
-        blocks[Math.round(((n + (count < blocks.length ? 1 : 0)) * (blocks.length - 1)) / Math.max(count - (count < blocks.length ? 0 : 1), 1))]!);
+        blocks[start + Math.round((n * (blocks.length - 1 - start)) / Math.max(count - 1, 1))]!);
       const first = chosen[0]!;
       const x = Float64Array.from(position.subarray(first.from, first.to), (v) => v * 1e3);
       table.columns.forEach((column, c) => {
@@ -52,7 +54,7 @@ export function profileCharts(runs: Run[]): HTMLElement[] {
           values: table.values[c]!.subarray(block.from, block.to),
           colour: ofTime(n, count),
         }));
-        const title = `${words(column.name)} along ${name.slice(5)}${runs.length > 1 ? `, ${run.name}` : ""}`;
+        const title = `Line ${name.slice(5)}: ${words(column.name).toLowerCase()}${runs.length > 1 ? `, ${run.name}` : ""}`;
         charts.push(chart({ title, xLabel: "position [mm]", yLabel: axisLabel(column.name.replace(/_/g, " "), column.unit), x, series }));
       });
     }

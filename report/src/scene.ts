@@ -64,6 +64,7 @@ export class SceneView {
   private readonly flight = new Box3();
   private readonly domain = new Box3();
   private wanted = false;
+  private placed = false;
 
   constructor(
     private readonly runs: Run[],
@@ -81,7 +82,6 @@ export class SceneView {
     runs.forEach((run, r) => this.addRun(run, r > 0));
     this.controls = new OrbitControls(this.camera, this.canvas);
     this.controls.addEventListener("change", () => this.request());
-    this.look("jet");
     player.onChange(() => this.request());
     new ResizeObserver(() => this.request()).observe(this.canvas);
   }
@@ -104,7 +104,7 @@ export class SceneView {
       for (const nozzle of replay.nozzles) this.scene.add(this.nozzleMesh(nozzle.position, nozzle.direction, nozzle.diameter));
     }
     replay.bodies.forEach((surface, body) => {
-      const colour = bodyColour(this.bodies.length, true);
+      const colour = bodyColour(body, true);
       const geometry = new BufferGeometry();
       geometry.setAttribute("position", new BufferAttribute(surface.vertices, 3));
       geometry.setIndex(new BufferAttribute(surface.triangles, 1));
@@ -144,7 +144,7 @@ export class SceneView {
   select(run: Run): void {
     for (const a of this.air) this.scene.remove(a.mesh);
     this.air = run.replay!.rasters.map((raster, n) => {
-      const image = new AirImage(run, n, fastestAir(run, n));
+      const image = new AirImage(run, n, fastestAir(run));
       const plane = airPlane(raster, image);
       this.scene.add(plane.mesh);
       return { image, ...plane };
@@ -157,7 +157,10 @@ export class SceneView {
     const centre = box.getCenter(new Vector3());
     const size = box.getSize(new Vector3());
     const from = { jet: [-0.75, -1.5, 0.65], flight: [-0.45, -1.2, 0.5], side: [0, -1, 0.001], above: [0, -0.02, 1] }[view];
-    const reach = Math.max(size.x / Math.max(this.camera.aspect, 0.5), size.z, size.y) * (view === "jet" ? 2.3 : 2.0);
+    // Far enough that the box fits in width and height.
+    const half = Math.tan((this.camera.fov * Math.PI) / 360);
+    const reach = 0.55 * Math.max(size.x / (half * this.camera.aspect), Math.hypot(size.y, size.z) / half) + 0.5 * size.y;
+    this.placed = true;
     this.camera.position.copy(centre).addScaledVector(new Vector3(...(from as Vec3)).normalize(), reach);
     this.controls.target.copy(centre);
     this.controls.update();
@@ -180,6 +183,7 @@ export class SceneView {
     this.renderer.setSize(width, height, false);
     this.camera.aspect = width / height;
     this.camera.updateProjectionMatrix();
+    if (!this.placed) this.look("jet");
     for (const { run, body, mesh } of this.bodies) {
       const pose = poseAt(run.replay!, body, this.player.time);
       mesh.visible = pose !== undefined;

@@ -7,9 +7,9 @@ import type { Player } from "./player";
 
 const AXES = ["x", "y", "z"];
 
-/** Fastest air in any frame of a raster, m/s: the top of the colour scale. */
-export function fastestAir(run: Run, raster: number): number {
-  return Math.max(1e-9, ...run.replay!.frames.map((f) => f.slices.get(raster)?.fullScale ?? 0));
+/** Fastest air in any frame of any slice, m/s: the top of the colour scale. */
+export function fastestAir(run: Run): number {
+  return Math.max(1e-9, ...run.replay!.frames.flatMap((f) => [...f.slices.values()].map((s) => s.fullScale)));
 }
 
 /** A painted slice, ready to be drawn or used as a texture. */
@@ -109,6 +109,7 @@ function drawBody(
 export class SliceView {
   readonly canvas = h("canvas", { class: "stage", role: "img" });
   readonly legend = h("div", { class: "legend" });
+  private readonly ghosts = document.createElement("canvas");
   private image!: AirImage;
   private plane!: Plane;
   private run!: Run;
@@ -123,7 +124,7 @@ export class SliceView {
 
   select(run: Run, raster: number): void {
     this.run = run;
-    this.image = new AirImage(run, raster, fastestAir(run, raster));
+    this.image = new AirImage(run, raster, fastestAir(run));
     this.plane = planeOf(run.replay!.rasters[raster]!);
     this.canvas.style.aspectRatio = String(this.aspect());
     const bar = h("canvas", { width: 256, height: 1, "aria-hidden": "true" });
@@ -195,11 +196,13 @@ export class SliceView {
     c.beginPath();
     c.rect(left, top, w, ht);
     c.clip();
-    let colour = 0;
     for (const run of this.runs) {
-      c.globalAlpha = run === this.run ? 1 : 0.45;
-      run.replay?.bodies.forEach((_, b) =>
-        drawBody(c, run, b, player.time, this.plane, bodyColour(colour++, true), toX, toY));
+      const layer = run === this.run ? c : this.ghostLayer(ratio);
+      run.replay?.bodies.forEach((_, b) => drawBody(layer, run, b, player.time, this.plane, bodyColour(b, true), toX, toY));
+      if (layer === c) continue;
+      c.globalAlpha = 0.5;
+      c.drawImage(this.ghosts, 0, 0, width, height);
+      c.globalAlpha = 1;
     }
     c.restore();
     c.strokeStyle = "rgba(255,255,255,0.25)";
@@ -208,6 +211,15 @@ export class SliceView {
       canvas.setAttribute("aria-label", `Air speed in the plane ${AXES[axis]} = ` +
         `${fixed(this.plane.raster.position * 1e3, 1)} mm at ${fixed(player.time * 1e3, 2)} ms, up to ` +
         `${fixed(this.airNow(), 1)} m/s, with the bodies drawn to scale.`);
+  }
+
+  /** Bodies of the other run are drawn apart and laid over as a whole, so that their faces do not shine through. */
+  private ghostLayer(ratio: number): CanvasRenderingContext2D {
+    this.ghosts.width = this.canvas.width;
+    this.ghosts.height = this.canvas.height;
+    const layer = this.ghosts.getContext("2d")!;
+    layer.setTransform(ratio, 0, 0, ratio, 0, 0);
+    return layer;
   }
 
   private airNow(): number {

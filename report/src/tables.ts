@@ -33,7 +33,6 @@ function factsOfBody(body: JsonObject, pointer: string): Fact[] {
 /** One card a body: its outcome and the numbers behind it. */
 export function bodyCards(runs: Run[]): HTMLElement | null {
   const cards = h("div", { class: "cards" });
-  let n = 0;
   runs.forEach((run, r) => bodiesOf(run).forEach((body, b) => {
     const outcome = body["outcome"];
     const ejected = outcome === "ejected";
@@ -44,7 +43,7 @@ export function bodyCards(runs: Run[]): HTMLElement | null {
         h("dt", {}, f.label)));
     cards.append(h("article", { class: "card" },
       h("header", {},
-        h("h3", {}, h("span", { class: r > 0 ? "swatch dashed" : "swatch", "data-body": n++ }), String(body["name"] ?? `body ${b}`),
+        h("h3", {}, h("span", { class: r > 0 ? "swatch dashed" : "swatch", "data-body": b }), String(body["name"] ?? `body ${b}`),
           runs.length > 1 ? h("span", { class: "of-run" }, ` ${run.name}`) : null),
         typeof outcome === "string"
           ? h("p", { class: ejected ? "outcome ejected" : "outcome kept" }, h("span", { "aria-hidden": "true" }, ejected ? "\u2197 " : "\u2192 "), outcome)
@@ -109,7 +108,7 @@ export function operatorTable(run: Run): HTMLElement | null {
     return [
       h("span", {}, String(o["name"]), h("small", {}, String(o["equation"] ?? ""))),
       h("span", { class: "bar", style: `--share:${share.toFixed(4)}` }, `${fixed(share * 100, 1)} %`),
-      `${short(Number(o["seconds"]))} s`,
+      `${fixed(Number(o["seconds"]), 2)} s`,
       thousands(Number(o["calls"])),
     ];
   });

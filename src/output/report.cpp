@@ -81,7 +81,7 @@ std::string run_json(const fs::path& directory) {
   text.pop_back();
   text += ",\"replay\":[";
   const std::vector<std::string> lines = read_replay_lines(run.replay());
-  for (std::size_t n = 0; n < lines.size(); ++n) text += (n ? "," : "") + lines[n];
+  for (std::size_t n = 0; n < lines.size(); ++n) text.append(n ? "," : "").append(lines[n]);
   return text + "]}";
 }
 
@@ -89,7 +89,7 @@ std::string run_json(const fs::path& directory) {
 
 std::string report_json(std::span<const fs::path> runs) {
   std::string text = fmt::format("{{\"format\":1,\"version\":\"{}\",\"runs\":[", version());
-  for (std::size_t n = 0; n < runs.size(); ++n) text += (n ? "," : "") + run_json(runs[n]);
+  for (std::size_t n = 0; n < runs.size(); ++n) text.append(n ? "," : "").append(run_json(runs[n]));
   text += "]}";
   std::string safe;
   safe.reserve(text.size());

@@ -11,17 +11,20 @@ using nlohmann::ordered_json;
 
 bool has_number(const ordered_json& j, const char* key) { return j.contains(key) && j[key].is_number(); }
 
-/// "ejected, 31.2 mm above the plate's edge (vertical velocity 0.35 m/s beyond what clears it)"
+/// "cube is ejected: its centre passes 12.3 mm above the plate's edge, with 0.25 m/s of vertical velocity to
+/// spare"
 std::string of_body(const ordered_json& body) {
-  std::string text = body["outcome"].get<std::string>();
+  std::string text =
+      fmt::format("{} is {}", body.value("name", "the body"), body["outcome"].get<std::string>());
   if (has_number(body, "clearance_at_splitter_m")) {
     const double mm = 1e3 * body["clearance_at_splitter_m"].get<double>();
-    text += fmt::format(", passing {:.1f} mm {} the plate's edge", std::abs(mm), mm >= 0 ? "above" : "below");
+    text += fmt::format(": its centre passes {:.1f} mm {} the plate's edge", std::abs(mm),
+                        mm >= 0 ? "above" : "below");
   }
   if (has_number(body, "velocity_margin_z_m_s")) {
     const double margin = body["velocity_margin_z_m_s"].get<double>();
-    text += fmt::format(" with {:.2f} m/s {} what clears it", std::abs(margin),
-                        margin >= 0 ? "more than" : "less than");
+    text += margin >= 0 ? fmt::format(", with {:.2f} m/s of vertical velocity to spare", margin)
+                        : fmt::format(", {:.2f} m/s of vertical velocity short of clearing it", -margin);
   }
   return text;
 }
@@ -29,12 +32,21 @@ std::string of_body(const ordered_json& body) {
 }  // namespace
 
 std::string verdict_sentence(const ordered_json& result) {
-  std::string text;
+  std::size_t judged = 0, ejected = 0;
+  std::string sentence, names;
   if (result.contains("bodies"))
-    for (const ordered_json& body : result["bodies"])
-      if (body.contains("outcome") && body["outcome"].is_string())
-        text += fmt::format("{}{}: {}", text.empty() ? "" : "; ", body.value("name", "body"), of_body(body));
-  if (!text.empty()) return text + '.';
+    for (const ordered_json& body : result["bodies"]) {
+      if (!body.contains("outcome") || !body["outcome"].is_string()) continue;
+      sentence = of_body(body);
+      ++judged;
+      if (body["outcome"] != "ejected") continue;
+      names += fmt::format("{}{}", ejected ? ", " : "", body.value("name", "?"));
+      ++ejected;
+    }
+  if (judged == 1) return sentence + '.';
+  if (judged > 1)
+    return fmt::format("{} of {} bodies {} ejected{}{}.", ejected, judged, ejected == 1 ? "is" : "are",
+                       ejected ? ": " : "", names);
   if (result.contains("expectations")) {
     const ordered_json& all = result["expectations"];
     std::size_t passed = 0;

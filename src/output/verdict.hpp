@@ -5,7 +5,8 @@
 namespace ejecta::output {
 
 /// The result in one sentence (docs/files.md: result.json), for the terminal and the head of the report: the
-/// outcome of each body with its margins, or what was computed when there is no verdict.
+/// outcome of the body with its margins, of several bodies which are ejected, or what was computed when there
+/// is no verdict.
 std::string verdict_sentence(const nlohmann::ordered_json& result);
 
 }  // namespace ejecta::output

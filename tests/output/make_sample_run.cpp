@@ -19,14 +19,14 @@
 #include "output/slice_sampler.hpp"
 #include "output/vtk_bodies.hpp"
 #include "output/vtk_rectilinear.hpp"
-#include "shape/triangle_mesh.hpp"
+#include "shape/shape.hpp"
 
 namespace {
 
 using namespace ejecta;
 using namespace ejecta::output;
 
-constexpr double kEnd = 0.090, kFlowEnd = 0.024, kStep = 1e-4;  // s
+constexpr double kEnd = 0.105, kFlowEnd = 0.024, kStep = 1e-4;  // s
 constexpr double kOpen = 0.004, kClose = 0.012;                 // s
 constexpr double kStandOff = 0.075, kBelt = 3.0;                // m, m/s
 
@@ -40,16 +40,6 @@ double jet_speed(double r, double z, double t) {
   return 5.9 * 1.8e-3 * 690.0 / z * opening(t - delay) *
          std::exp(-std::numbers::ln2 * r * r / (half * half)) *
          (1 + 0.1 * std::sin(900 * z - 5e3 * t) * std::exp(-std::pow((r - half) / half, 2)));
-}
-
-TriangleMesh box(const Vec3& size) {
-  TriangleMesh mesh;
-  for (int n = 0; n < 8; ++n)
-    mesh.vertices.push_back(
-        0.5 * Vec3(n & 1 ? size.x() : -size.x(), n & 2 ? size.y() : -size.y(), n & 4 ? size.z() : -size.z()));
-  mesh.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
-                    {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
-  return mesh;
 }
 
 struct Lump {
@@ -94,8 +84,9 @@ void write_sample(const std::filesystem::path& directory, double push, int cells
 
   std::vector<Lump> lumps{{"cube", {0.01, 0.01, 0.01}, {-0.0165, 0, kStandOff + 0.0013}},
                           {"flat", {0.01, 0.01, 0.005}, {-0.034, 0.006, kStandOff + 0.0028}}};
-  std::vector<BodySurface> surfaces;
-  for (const Lump& lump : lumps) surfaces.push_back(make_body_surface(lump.name, box(lump.size)));
+  const std::vector<BodySurface> surfaces{
+      make_body_surface("cube", make_cluster(lumps[0].size, {3, 3, 3}, 0.005).surface(2e-4)),
+      make_body_surface("flat", make_box(lumps[1].size).surface())};
 
   ReplayHeader header;
   header.domain = {grid.lower(), grid.upper()};
@@ -247,7 +238,7 @@ void write_sample(const std::filesystem::path& directory, double push, int cells
 
 int main(int argc, char** argv) try {
   if (argc < 2) throw InputError("usage: make_sample_run DIR [PUSH [CELLS_PER_10MM]]");
-  write_sample(argv[1], argc > 2 ? std::stod(argv[2]) : 1.0, argc > 3 ? std::stoi(argv[3]) : 8);
+  write_sample(argv[1], argc > 2 ? std::stod(argv[2]) : 2.4, argc > 3 ? std::stoi(argv[3]) : 8);
 } catch (const std::exception& e) {
   std::fprintf(stderr, "%s\n", e.what());
   return 1;

@@ -83,7 +83,7 @@ TEST(Report, HoldsTheRunAndCannotBreakOutOfItsScript) {
   const auto data = ordered_json::parse(json);
   EXPECT_EQ(data["runs"][0]["name"], "a.run");
   EXPECT_EQ(data["runs"][0]["case"], "# </script><b>&\n");
-  EXPECT_EQ(data["runs"][0]["verdict"], "cube: ejected, passing 12.3 mm above the plate's edge.");
+  EXPECT_EQ(data["runs"][0]["verdict"], "cube is ejected: its centre passes 12.3 mm above the plate's edge.");
   EXPECT_EQ(data["runs"][0]["history"]["body-cube"]["columns"][1]["unit"], "m");
   EXPECT_EQ(data["runs"][0]["replay"].size(), 2u);
   write_report(path);
@@ -117,12 +117,21 @@ TEST(PlainReport, ShowsVerdictAndNumbers) {
 }
 
 TEST(Verdict, OneSentenceForEveryKindOfRun) {
-  EXPECT_EQ(verdict_sentence({{"bodies",
-                               {{{"name", "a"},
-                                 {"outcome", "not ejected"},
-                                 {"clearance_at_splitter_m", -0.02},
-                                 {"velocity_margin_z_m_s", -0.25}}}}}),
-            "a: not ejected, passing 20.0 mm below the plate's edge with 0.25 m/s less than what clears it.");
+  const ordered_json missed{{"name", "a"},
+                            {"outcome", "not ejected"},
+                            {"clearance_at_splitter_m", -0.02},
+                            {"velocity_margin_z_m_s", -0.25}};
+  const ordered_json hit{{"name", "b"}, {"outcome", "ejected"}, {"velocity_margin_z_m_s", 0.1}};
+  const auto bodies = [](std::vector<ordered_json> list) {
+    return ordered_json{{"bodies", std::move(list)}};
+  };
+  EXPECT_EQ(verdict_sentence(bodies({missed})),
+            "a is not ejected: its centre passes 20.0 mm below the plate's edge, 0.25 m/s of vertical "
+            "velocity short "
+            "of clearing it.");
+  EXPECT_EQ(verdict_sentence(bodies({hit})), "b is ejected, with 0.10 m/s of vertical velocity to spare.");
+  EXPECT_EQ(verdict_sentence(bodies({missed, hit})), "1 of 2 bodies is ejected: b.");
+  EXPECT_EQ(verdict_sentence(bodies({missed, missed})), "0 of 2 bodies are ejected.");
   EXPECT_EQ(verdict_sentence({{"simulated_time_s", 0.02}}), "Computed 20 ms.");
   EXPECT_EQ(verdict_sentence({{"expectations", {{{"pass", true}}, {{"pass", false}}}}}),
             "1 of 2 expected values met.");
