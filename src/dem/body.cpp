@@ -5,22 +5,11 @@
 #include <filesystem>
 
 #include "base/error.hpp"
+#include "shape/stl.hpp"
 
 namespace ejecta {
-namespace {
 
-int material_index(const BodySpec& spec, const Case& config) {
-  for (std::size_t n = 0; n < config.materials.size(); ++n)
-    if (config.materials[n].name == spec.material) return static_cast<int>(n);
-  std::string known;
-  for (const MaterialSpec& m : config.materials) known += (known.empty() ? "" : ", ") + m.name;
-  throw InputError(fmt::format("material \"{}\" is not defined; known: {}", spec.material,
-                               known.empty() ? "none" : known));
-}
-
-}  // namespace
-
-Shape make_shape(const BodySpec& spec, const std::string&) {
+Shape make_shape(const BodySpec& spec, const std::string& directory) {
   switch (spec.shape) {
     case ShapeKind::sphere:
       return make_sphere(spec.diameter);
@@ -33,17 +22,23 @@ Shape make_shape(const BodySpec& spec, const std::string&) {
       for (const auto& s : spec.spheres) balls.push_back({Vec3(s[0], s[1], s[2]), s[3]});
       return make_multisphere(balls);
     }
-    default:
-      throw InputError("this shape is not available");
+    case ShapeKind::polyhedron:
+      return make_polyhedron(spec.vertices);
+    case ShapeKind::mesh: {
+      const std::string path = (std::filesystem::path(directory) / spec.file).string();
+      return make_mesh(read_stl(path, spec.scale), path);
+    }
+    case ShapeKind::superquadric:
+      break;
   }
+  throw InputError("this shape is not available");
 }
 
-Body make_body(const BodySpec& spec, const Case& config) {
+Body make_body(const BodySpec& spec, const Materials& materials, const std::string& directory) {
   try {
-    Body body{spec.name, make_shape(spec, std::filesystem::path(config.path).parent_path())};
-    body.material = material_index(spec, config);
-    const double density =
-        spec.density.value_or(config.materials[static_cast<std::size_t>(body.material)].density);
+    Body body{spec.name, make_shape(spec, directory)};
+    body.material = materials.index(spec.material);
+    const double density = spec.density.value_or(materials.spec(body.material).density);
     const bool as_box = spec.shape == ShapeKind::cluster && spec.true_box_mass;
     const MassProperties unit = as_box ? mass_box(spec.size) : body.shape.mass_properties();
     body.mass = spec.mass.value_or(density * unit.volume);

@@ -3,6 +3,7 @@
 
 #include "base/vec.hpp"
 #include "case/case.hpp"
+#include "dem/materials.hpp"
 #include "shape/shape.hpp"
 
 namespace ejecta {
@@ -40,6 +41,6 @@ struct Body {
 /// `directory`: where relative file names start.
 Shape make_shape(const BodySpec& spec, const std::string& directory);
 /// Mass, inertia and placement of a [[body]] entry. Throws InputError naming the body.
-Body make_body(const BodySpec& spec, const Case& config);
+Body make_body(const BodySpec& spec, const Materials& materials, const std::string& directory);
 
 }  // namespace ejecta

@@ -29,8 +29,10 @@ template <class T>
 struct ContactForce {
   Triple<T> force;           ///< N, on a
   T normal{};                ///< N, its normal part, >= 0 unless tension is allowed
+  T spring{};                ///< N, the normal spring alone
   T tangential_stiffness{};  ///< N/m
-  T elastic{};               ///< J, stored in the normal and tangential springs
+  T elastic_normal{};        ///< J, stored in the normal spring
+  T elastic_tangential{};    ///< J
 };
 
 /// Normal spring, as stiffnesses at this overlap. Force = secant * overlap.
@@ -106,7 +108,9 @@ ContactForce<T> contact_force(const Contact<T>& c, const PairConstants<T>& p, bo
   f.force = normal * c.normal + tangential;
   f.normal = normal;
   f.tangential_stiffness = s.tangential;
-  f.elastic = s.energy + 0.5 * s.tangential * dot(slip, slip);
+  f.spring = s.secant * c.overlap;
+  f.elastic_normal = s.energy;
+  f.elastic_tangential = 0.5 * s.tangential * dot(slip, slip);
   return f;
 }
 

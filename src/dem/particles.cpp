@@ -1,37 +1,45 @@
 #include "dem/particles.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
+#include "base/error.hpp"
+#include "dem/blocks.hpp"
 #include "dem/rotation.hpp"
+#include "dem/time_step.hpp"
 
 namespace ejecta {
+namespace {
 
-int Particles::add(Body body) {
-  momentum_.push_back(body.angular_momentum());
-  bodies_.push_back(std::move(body));
-  return static_cast<int>(bodies_.size()) - 1;
+constexpr int kBlock = 128;             // bodies one thread moves at a time; sums are kept by block
+constexpr double kSlowest = 0.1;        // m/s, impact speed the step is made for at least
+constexpr int kStepsBetweenLists = 20;  // aimed at when the skin is chosen
+
+}  // namespace
+
+Particles::Particles(const Vec3& gravity, Materials materials, const ContactSpec& contact)
+    : gravity_(gravity), materials_(std::move(materials)), contact_(contact) {}
+
+bool Particles::moves(const Body& body) const {
+  return body.motion != Motion::fixed && time_ >= body.release_at * (1 - 1e-12);
 }
 
-void Particles::remove(int index) {
-  bodies_.erase(bodies_.begin() + index);
-  momentum_.erase(momentum_.begin() + index);
+double Particles::stable_dt() const {
+  if (contact_.time_step) return *contact_.time_step;
+  double fastest = kSlowest;
+  for (const Body& b : bodies_) fastest = std::max(fastest, b.velocity.norm());
+  double time = 1.0;
+  for (const Body& b : bodies_)
+    if (b.motion == Motion::free) time = std::min(time, contact_time(b, materials_, fastest));
+  return contact_.time_step_fraction * time;
 }
-
-void Particles::place(int index, const Vec3& position, const Quat& orientation, const Vec3& velocity,
-                      const Vec3& angular_velocity) {
-  Body& b = bodies_[static_cast<std::size_t>(index)];
-  b.position = position;
-  b.orientation = orientation;
-  b.velocity = velocity;
-  b.angular_velocity = angular_velocity;
-  momentum_[static_cast<std::size_t>(index)] = b.angular_momentum();
-}
-
-double Particles::stable_dt() const { return largest_step_; }
 
 void Particles::advance(double dt, std::span<const Load> loads) {
-  const int steps = std::max(1, static_cast<int>(std::ceil(dt / largest_step_ * (1 - 1e-12))));
+  if (!(dt > 0)) return;
+  const int steps = std::max(1, static_cast<int>(std::ceil(dt / stable_dt() * (1 - 1e-12))));
   const double start = time_;
   for (int n = 0; n < steps; ++n) {
     substep(dt / steps, loads);
@@ -39,61 +47,158 @@ void Particles::advance(double dt, std::span<const Load> loads) {
   }
 }
 
+Vec3 Particles::acceleration(std::size_t n, std::span<const Load> loads) const {
+  Vec3 force = force_[n];
+  if (!loads.empty()) force += loads[n].force;
+  return gravity_ + force / bodies_[n].mass;
+}
+
+Vec3 Particles::torque_on(std::size_t n, std::span<const Load> loads) const {
+  return loads.empty() ? torque_[n] : Vec3(torque_[n] + loads[n].torque);
+}
+
+/// Velocity Verlet (Swope et al. 1982, J. Chem. Phys. 76:637): half a kick, drift, new forces, half a kick.
 void Particles::substep(double dt, std::span<const Load> loads) {
+  drift(dt, loads);
+  find_contacts(dt);
+  kick(dt, loads);
+}
+
+void Particles::drift(double dt, std::span<const Load> loads) {
+  const int count = static_cast<int>(bodies_.size());
+  block_moved_.resize(static_cast<std::size_t>(block_count(count, kBlock)));
+  for_each_block(count, kBlock, [&](int block, int begin, int end) {
+    double farthest = 0.0;
+    for (int i = begin; i < end; ++i) {
+      const std::size_t n = static_cast<std::size_t>(i);
+      Body& b = bodies_[n];
+      if (moves(b)) {
+        const bool pushed = b.motion == Motion::free;
+        const Vec3 kick = pushed ? Vec3(0.5 * dt * acceleration(n, loads)) : Vec3(0, 0, 0);
+        const Vec3 twist = pushed ? Vec3(0.5 * dt * torque_on(n, loads)) : Vec3(0, 0, 0);
+        b.velocity += kick;
+        momentum_[n] += twist;
+        b.position += dt * b.velocity;
+        rotate_free(b.orientation, momentum_[n], b.inertia, dt);
+        // Damping and friction need velocities at the whole step: extrapolated, to keep the second order.
+        velocity_[n] = b.velocity + kick;
+        spin_[n] = angular_velocity(b.orientation, momentum_[n] + twist, b.inertia);
+        turned_[n] += dt * spin_[n].norm() * parts_.arm(i);
+        const double moved = (b.position - listed_at_[n]).norm() + turned_[n];
+        if (!(moved <= farthest)) farthest = moved;  // keeps NaN
+      } else {
+        velocity_[n].setZero();
+        spin_[n].setZero();
+      }
+      parts_.update(i, b, velocity_[n], spin_[n]);
+    }
+    block_moved_[static_cast<std::size_t>(block)] = farthest;
+  });
+}
+
+void Particles::find_contacts(double dt) {
+  double moved = 0.0;
+  for (const double block : block_moved_)
+    if (!(block <= moved)) moved = block;
+  if (!(moved < std::numeric_limits<double>::infinity())) throw_diverged();
+  if (relist_ || 2 * moved > skin_) list_candidates(dt);
+  balls_.compute(parts_, materials_, dt);
+  solids_.compute(parts_, bodies_, walls_, materials_, velocity_, spin_, dt);
+}
+
+void Particles::throw_diverged() const {
+  for (const Body& b : bodies_)
+    if (!b.position.allFinite() || !b.orientation.coeffs().allFinite())
+      throw DivergedError(
+          fmt::format("the motion of body \"{}\" became no number at t = {:.6g} s; try a smaller "
+                      "contact.time_step_fraction (now {}) or check the loads on it",
+                      b.name, time_, contact_.time_step_fraction));
+  throw DivergedError(fmt::format("a body left the realm of numbers at t = {:.6g} s", time_));
+}
+
+void Particles::list_candidates(double dt) {
+  double fastest = 0.0, smallest = std::numeric_limits<double>::infinity();
   for (std::size_t n = 0; n < bodies_.size(); ++n) {
-    Body& b = bodies_[n];
-    if (b.motion == Motion::fixed || time_ < b.release_at * (1 - 1e-12)) continue;
-    const bool is_free = b.motion == Motion::free;
-    const Load load = is_free && !loads.empty() ? loads[n] : Load{};
-    const Vec3 kick = is_free ? Vec3(0.5 * dt * (gravity_ + load.force / b.mass)) : Vec3(0, 0, 0);
-    b.velocity += kick;
-    momentum_[n] += 0.5 * dt * load.torque;
-    b.position += dt * b.velocity;
-    rotate_free(b.orientation, momentum_[n], b.inertia, dt);
-    b.velocity += kick;
-    momentum_[n] += 0.5 * dt * load.torque;
-    b.angular_velocity = angular_velocity(b.orientation, momentum_[n], b.inertia);
+    fastest = std::max(fastest, velocity_[n].norm() + spin_[n].norm() * parts_.arm(static_cast<int>(n)));
+    smallest = std::min(smallest, bodies_[n].shape.bounding_radius());
+    listed_at_[n] = bodies_[n].position;
+    turned_[n] = 0.0;
   }
+  skin_ = std::clamp(2 * kStepsBetweenLists * fastest * dt, 0.1 * smallest, smallest);
+  relist_ = false;
+  Candidates candidates = search_.find(parts_, bodies_, walls_, skin_);
+  balls_.set_pairs(candidates.balls, parts_.ball_count());
+  solids_.set_pairs(std::move(candidates.solids));
+}
+
+void Particles::kick(double dt, std::span<const Load> loads) {
+  const int count = static_cast<int>(bodies_.size());
+  block_work_.resize(static_cast<std::size_t>(block_count(count, kBlock)));
+  for_each_block(count, kBlock, [&](int, int begin, int end) {
+    for (int i = begin; i < end; ++i) {
+      const std::size_t n = static_cast<std::size_t>(i);
+      force_[n].setZero();
+      torque_[n].setZero();
+      for (int ball = parts_.first_ball(i); ball < parts_.first_ball(i + 1); ++ball) {
+        Vec3 force(0, 0, 0);
+        balls_.gather(parts_, ball, force, torque_[n]);
+        force_[n] += force;
+        torque_[n] += (parts_.row(ball).centre() - bodies_[n].position).cross(force);
+      }
+    }
+  });
+  solids_.gather(bodies_, force_, torque_);
+  for_each_block(count, kBlock, [&](int block, int begin, int end) {
+    double work = 0.0;
+    for (int i = begin; i < end; ++i) {
+      const std::size_t n = static_cast<std::size_t>(i);
+      Body& b = bodies_[n];
+      if (!moves(b)) continue;
+      if (b.motion == Motion::free) {
+        b.velocity += 0.5 * dt * acceleration(n, loads);
+        momentum_[n] += 0.5 * dt * torque_on(n, loads);
+        if (!loads.empty()) work += loads[n].force.dot(velocity_[n]) + loads[n].torque.dot(spin_[n]);
+      } else {
+        work -= force_[n].dot(velocity_[n]) + torque_[n].dot(spin_[n]);  // what keeps it on its course
+      }
+      b.angular_velocity = angular_velocity(b.orientation, momentum_[n], b.inertia);
+    }
+    block_work_[static_cast<std::size_t>(block)] = work;
+  });
+  for (const double work : block_work_) outer_work_ += dt * work;
+  outer_work_ += dt * solids_.wall_power();
+  contact_work_ += dt * (balls_.power() + solids_.power());
 }
 
 DemEnergy Particles::energy() const {
   DemEnergy e;
   for (const Body& b : bodies_) {
     e.kinetic += b.kinetic_energy();
-    e.potential -= b.mass * gravity_.dot(b.position);
+    if (b.motion == Motion::free) e.potential -= b.mass * gravity_.dot(b.position);
   }
+  e.elastic = balls_.elastic() + solids_.elastic();
+  e.dissipated = contact_work_ - e.elastic;
+  e.work = outer_work_;
   return e;
 }
 
-std::vector<double> Particles::state() const {
-  std::vector<double> s{time_};
-  for (std::size_t n = 0; n < bodies_.size(); ++n) {
-    const Body& b = bodies_[n];
-    s.insert(s.end(), b.position.data(), b.position.data() + 3);
-    s.insert(s.end(), b.orientation.coeffs().data(), b.orientation.coeffs().data() + 4);
-    s.insert(s.end(), b.velocity.data(), b.velocity.data() + 3);
-    s.insert(s.end(), momentum_[n].data(), momentum_[n].data() + 3);
+std::vector<ContactRecord> Particles::contacts() const {
+  std::vector<ContactRecord> records;
+  for (int n = 0; n < balls_.pair_count(); ++n) {
+    const auto& row = balls_.row(n);
+    if (!(row.half_overlap > 0)) continue;
+    const auto [a, b] = balls_.pair(n);
+    const BallRow &ball = parts_.row(a), &other = parts_.row(b);
+    const Vec3 normal = (ball.centre() - other.centre()).normalized();
+    records.push_back({parts_.body_of_ball(a), parts_.body_of_ball(b),
+                       ball.centre() - (ball.radius - row.half_overlap) * normal, normal,
+                       Vec3(row.fx, row.fy, row.fz), 2 * row.half_overlap});
   }
-  return s;
-}
-
-void Particles::restore(std::span<const double> s) {
-  time_ = s[0];
-  for (std::size_t n = 0; n < bodies_.size(); ++n) {
-    const double* at = s.data() + 1 + 13 * n;
-    Body& b = bodies_[n];
-    b.position = Vec3(at);
-    b.orientation.coeffs() = Eigen::Vector4d(at + 3);
-    b.velocity = Vec3(at + 7);
-    momentum_[n] = Vec3(at + 10);
-    b.angular_velocity = angular_velocity(b.orientation, momentum_[n], b.inertia);
-  }
-}
-
-Particles make_particles(const Case& config) {
-  Particles particles(config.environment.gravity);
-  for (const BodySpec& spec : config.bodies) particles.add(make_body(spec, config));
-  return particles;
+  for (const SolidPair& p : solids_.pairs())
+    if (p.touch.overlap > 0)
+      records.push_back({p.body_a, p.body_b >= 0 ? p.body_b : -1 - p.b.index, p.touch.point, p.touch.normal,
+                         p.force, p.touch.overlap});
+  return records;
 }
 
 }  // namespace ejecta

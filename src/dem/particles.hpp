@@ -1,10 +1,15 @@
 #pragma once
 #include <span>
-#include <string>
 #include <vector>
 
+#include "dem/ball_contacts.hpp"
 #include "dem/body.hpp"
+#include "dem/candidates.hpp"
 #include "dem/loads.hpp"
+#include "dem/materials.hpp"
+#include "dem/parts.hpp"
+#include "dem/solid_contacts.hpp"
+#include "dem/walls.hpp"
 
 namespace ejecta {
 
@@ -12,45 +17,89 @@ namespace ejecta {
 /// prescribed bodies.
 struct DemEnergy {
   double kinetic = 0.0, potential = 0.0, elastic = 0.0, dissipated = 0.0, work = 0.0;
-  /// kinetic + potential + elastic + dissipated - work: constant.
+  /// kinetic + potential + elastic + dissipated - work: constant in exact arithmetic.
   double ledger() const { return kinetic + potential + elastic + dissipated - work; }
+};
+
+/// A contact as it is shown. World axes.
+struct ContactRecord {
+  int a = 0;                             ///< body
+  int b = 0;                             ///< body, or -1 - n for wall n
+  Vec3 point{0, 0, 0}, normal{0, 0, 1};  ///< m; unit, from b to a
+  Vec3 force{0, 0, 0};                   ///< N, on a
+  double overlap = 0.0;                  ///< m
 };
 
 /// All bodies that move and touch, with their walls. Advances itself; knows no fluid.
 class Particles {
  public:
-  explicit Particles(const Vec3& gravity) : gravity_(gravity) {}
+  Particles(const Vec3& gravity, Materials materials, const ContactSpec& contact);
 
   /// Moves all bodies over dt (s) in equal sub-steps no longer than stable_dt(); gravity acts, loads[i] acts
-  /// on body i and is held constant (empty: none).
+  /// on body i and is held constant (empty: none). Throws DivergedError naming a body whose motion is no
+  /// number.
   void advance(double dt, std::span<const Load> loads = {});
-  /// The largest sub-step, s.
+  /// The largest sub-step, s: contact.time_step or the stated fraction of the shortest contact time.
   double stable_dt() const;
   double time() const { return time_; }
+
   std::span<const Body> bodies() const { return bodies_; }
+  std::span<const Wall> walls() const { return walls_; }
+  const Materials& materials() const { return materials_; }
+  /// N, of all contacts of a body at the last sub-step.
+  const Vec3& contact_force(int index) const { return force_[static_cast<std::size_t>(index)]; }
+  std::vector<ContactRecord> contacts() const;
+  DemEnergy energy() const;
 
   /// Returns the index of the new body.
   int add(Body body);
   void remove(int index);
-  /// Sets position, orientation and velocities of a body from the given one (launch).
+  void add(Wall wall);
+  /// Sets place and velocities of a body (launch).
   void place(int index, const Vec3& position, const Quat& orientation, const Vec3& velocity,
              const Vec3& angular_velocity);
 
-  DemEnergy energy() const;
+  /// Throws InputError naming the pair that overlaps most, if by more than a thousandth of its size.
+  void require_apart();
+
   /// Everything that changes in time, contact history included: restore() continues to the same bits.
   std::vector<double> state() const;
   void restore(std::span<const double> state);
 
  private:
   void substep(double dt, std::span<const Load> loads);
+  void drift(double dt, std::span<const Load> loads);
+  void kick(double dt, std::span<const Load> loads);
+  void find_contacts(double dt);
+  bool moves(const Body& body) const;
+  Vec3 acceleration(std::size_t n, std::span<const Load> loads) const;
+  Vec3 torque_on(std::size_t n, std::span<const Load> loads) const;
+  void list_candidates(double dt);
+  [[noreturn]] void throw_diverged() const;
+
   Vec3 gravity_;
+  Materials materials_;
+  ContactSpec contact_;
   double time_ = 0.0;
-  double largest_step_ = 1e-4;
   std::vector<Body> bodies_;
-  std::vector<Vec3> momentum_;  // angular, world
+  std::vector<Wall> walls_;
+  std::vector<Vec3> momentum_;         // angular, world, kg m2/s
+  std::vector<Vec3> force_, torque_;   // of contacts at the last sub-step
+  std::vector<Vec3> velocity_, spin_;  // as the contact laws see them: extrapolated to the whole step
+  std::vector<Vec3> listed_at_;        // positions for which candidates were listed
+  std::vector<double> turned_;         // m, no part of a body has moved farther by its turning since
+  std::vector<double> block_moved_, block_work_;
+  Parts parts_;
+  CandidateSearch search_;
+  BallContacts balls_;
+  SolidContacts solids_;
+  double skin_ = 0.0;  // m, candidates are pairs with gap < skin
+  bool relist_ = true;
+  double contact_work_ = 0.0, outer_work_ = 0.0;  // J
 };
 
-/// Bodies, materials, walls and contact law of a case.
+/// Bodies, materials, walls and contact law of a case. Refuses bodies that overlap and steps that are too
+/// long.
 Particles make_particles(const Case& config);
 
 }  // namespace ejecta

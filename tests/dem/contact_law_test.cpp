@@ -42,7 +42,7 @@ TEST(ContactLaw, HertzForceAndEnergy) {
   D slip;
   const auto f = contact_force<HertzMindlin>(contact(1e-5, {0, 0, 0}), kPair, false, 1e-6, slip);
   EXPECT_NEAR(f.normal, 4.0 / 3.0 * 1e7 * std::sqrt(2e-3) * std::pow(1e-5, 1.5), 1e-12);
-  EXPECT_NEAR(f.elastic, 0.4 * f.normal * 1e-5, 1e-18);
+  EXPECT_NEAR(f.elastic_normal, 0.4 * f.normal * 1e-5, 1e-18);
 }
 
 TEST(ContactLaw, FrictionNeverExceedsCoulombAndOpposesSliding) {
@@ -53,7 +53,9 @@ TEST(ContactLaw, FrictionNeverExceedsCoulombAndOpposesSliding) {
     EXPECT_LE(size, 0.4 * f.normal * (1 + 1e-12));
     EXPECT_LE(f.force.x, 0);
     EXPECT_GE(f.force.y, 0);
-    if (n == 99) EXPECT_NEAR(size, 0.4 * f.normal, 1e-12);
+    if (n == 99) {
+      EXPECT_NEAR(size, 0.4 * f.normal, 1e-12);
+    }
   }
 }
 

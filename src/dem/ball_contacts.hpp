@@ -1,0 +1,59 @@
+#pragma once
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "dem/materials.hpp"
+#include "dem/parts.hpp"
+
+namespace ejecta {
+
+/// Contacts between balls: spheres and the spheres of multi-sphere bodies. Eight pairs at a time.
+class BallContacts {
+ public:
+  /// What a pair (a, b) does: one cache line.
+  struct alignas(64) PairRow {
+    double fx = 0, fy = 0, fz = 0;  ///< N, on a
+    double half_overlap = 0;        ///< m, 0: apart
+    double gx = 0, gy = 0, gz = 0;  ///< N, normal (from b to a) x force
+    double unused = 0;
+  };
+
+  /// Candidate pairs of balls (a < b), sorted. Histories of pairs that were there before are kept.
+  void set_pairs(const std::vector<std::pair<int, int>>& pairs, int balls);
+  /// Evaluates the law on every pair and moves the histories over dt.
+  void compute(const Parts& parts, const Materials& materials, double dt);
+  /// Adds the force and the torque about the ball's centre that act on it.
+  void gather(const Parts& parts, int ball, Vec3& force, Vec3& torque) const;
+
+  double elastic() const { return elastic_; }  ///< J
+  double power() const { return power_; }      ///< W, taken from the bodies' motion by the contacts
+
+  int pair_count() const { return count_; }
+  std::pair<int, int> pair(int n) const { return {a_[at(n)], b_[at(n)]}; }
+  const PairRow& row(int n) const { return rows_[at(n)]; }
+
+  /// Gives balls their new indices (-1: gone, with its pairs).
+  void rename(std::span<const int> names, int balls);
+  /// a, b and history of each pair that has one.
+  void save(std::vector<double>& out) const;
+  const double* load(const double* in, int balls);
+
+ private:
+  static std::size_t at(int n) { return static_cast<std::size_t>(n); }
+  void index_pairs(int balls);
+  template <class Law, bool Rolling>
+  void compute_all(const Parts& parts, const Materials& materials, double dt);
+
+  int count_ = 0;                   // without the padding to whole lanes
+  std::vector<int> a_, b_;          // padded with the ball that touches nothing
+  std::vector<double> history_[6];  // slip x, y, z and roll x, y, z of each pair
+  std::vector<PairRow> rows_;
+  std::vector<double> moments_[3];                    // N m, rolling resistance on a
+  std::vector<int> first_own_, first_other_, other_;  // pairs of a ball as a (a range) and as b (a list)
+  std::vector<double> block_elastic_, block_power_;
+  double elastic_ = 0.0, power_ = 0.0;
+  bool rolling_ = false;
+};
+
+}  // namespace ejecta

@@ -1,0 +1,21 @@
+#pragma once
+#include <algorithm>
+
+#include "base/parallel.hpp"
+
+namespace ejecta {
+
+/// Number of blocks of `block` items.
+inline int block_count(int count, int block) { return (count + block - 1) / block; }
+
+/// kernel(b, begin, end) for each block of items, in parallel if there is more than one: waking threads costs
+/// more than a small block. What a block sums does not depend on the number of threads.
+template <class Kernel>
+void for_each_block(int count, int block, const Kernel& kernel) {
+  const int blocks = block_count(count, block);
+  const auto run = [&](int b) { kernel(b, b * block, std::min((b + 1) * block, count)); };
+  if (blocks == 1) return run(0);
+  if (blocks > 1) for_each_index(blocks, run);
+}
+
+}  // namespace ejecta

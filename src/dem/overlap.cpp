@@ -1,0 +1,168 @@
+#include "dem/overlap.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace ejecta {
+namespace {
+
+using Polygon = std::vector<Vec3>;
+
+struct Plane {
+  Vec3 normal;
+  double offset;
+};
+
+/// Buffers kept between calls: no step allocates.
+struct Scratch {
+  Polygon polygon, clipped;
+  std::vector<double> heights;
+  std::vector<Plane> planes;
+};
+
+Scratch& scratch() {
+  thread_local Scratch s;
+  return s;
+}
+
+/// Keeps the part of s.polygon with height < 0 (Sutherland & Hodgman 1974). False if nothing is left.
+bool clip(Scratch& s, const Plane& plane) {
+  const std::size_t count = s.polygon.size();
+  s.heights.resize(count);
+  bool any_in = false, any_out = false;
+  for (std::size_t n = 0; n < count; ++n) {
+    s.heights[n] = plane.normal.dot(s.polygon[n]) - plane.offset;
+    (s.heights[n] < 0 ? any_in : any_out) = true;
+  }
+  if (!any_out) return true;
+  if (!any_in) return false;
+  s.clipped.clear();
+  for (std::size_t n = 0; n < count; ++n) {
+    const std::size_t next = n + 1 == count ? 0 : n + 1;
+    const double h = s.heights[n], g = s.heights[next];
+    if (h < 0) s.clipped.push_back(s.polygon[n]);
+    if ((h < 0) != (g < 0))
+      s.clipped.push_back(s.polygon[n] + h / (h - g) * (s.polygon[next] - s.polygon[n]));
+  }
+  std::swap(s.polygon, s.clipped);
+  return s.polygon.size() >= 3;
+}
+
+/// Volume, moment and area of the pyramids that faces span with an apex.
+struct Sums {
+  Vec3 apex{0, 0, 0};
+  double volume = 0.0;
+  Vec3 moment{0, 0, 0};
+
+  /// Adds a polygon; returns its vector area.
+  Vec3 add(const Polygon& p, Vec3& area_moment, double& area) {
+    Vec3 sum(0, 0, 0);
+    const Vec3 a = p[0] - apex;
+    for (std::size_t n = 1; n + 1 < p.size(); ++n) {
+      const Vec3 b = p[n] - apex, c = p[n + 1] - apex;
+      const Vec3 twice = (b - a).cross(c - a);
+      const double six_v = a.dot(twice), size = 0.5 * twice.norm();
+      const Vec3 corners = a + b + c;
+      volume += six_v / 6.0;
+      moment += six_v / 24.0 * corners;
+      area_moment += size / 3.0 * corners;
+      area += size;
+      sum += 0.5 * twice;
+    }
+    return sum;
+  }
+};
+
+void load_face(Scratch& s, const Polytope& p, const Polytope::Face& f, const Mat3& rotation,
+               const Vec3& shift) {
+  s.polygon.clear();
+  for (int n = f.first; n < f.first + f.count; ++n)
+    s.polygon.push_back(
+        rotation * p.vertices[static_cast<std::size_t>(p.corners[static_cast<std::size_t>(n)])] + shift);
+}
+
+/// Planes that cut the ball about `centre`; the others cannot clip anything inside it. False if it is
+/// outside.
+bool planes_near(const Polytope& p, const Mat3& rotation, const Vec3& shift, double margin,
+                 const Vec3& centre, double radius, std::vector<Plane>& planes) {
+  planes.clear();
+  for (const Polytope::Face& f : p.faces) {
+    const Vec3 normal = rotation * f.normal;
+    const double offset = f.offset + normal.dot(shift) + margin;
+    const double height = normal.dot(centre) - offset;
+    if (height >= radius) return false;
+    if (height > -radius) planes.push_back({normal, offset});
+  }
+  return true;
+}
+
+/// Clips the faces of p (moved) by the planes and adds what is left.
+Vec3 add_faces(Scratch& s, Sums& sums, bool& started, const Polytope& p, const Mat3& rotation,
+               const Vec3& shift, double margin, Vec3& area_moment, double& area) {
+  Vec3 total(0, 0, 0);
+  for (const Polytope::Face& f : p.faces) {
+    load_face(s, p, f, rotation, shift + margin * (rotation * f.normal));
+    bool left = true;
+    for (std::size_t n = 0; n < s.planes.size() && left; ++n) {
+      left = clip(s, s.planes[n]);
+      if (!left) std::swap(s.planes[n], s.planes[n / 2]);  // what rejects one face often rejects the next
+    }
+    if (!left) continue;
+    if (!started) sums.apex = s.polygon[0];
+    started = true;
+    total += sums.add(s.polygon, area_moment, area);
+  }
+  return total;
+}
+
+}  // namespace
+
+Overlap overlap_half_space(const Polytope& a, const Vec3& normal, double offset) {
+  Overlap o;
+  if (normal.dot(a.centre) - a.radius >= offset) return o;
+  Scratch& s = scratch();
+  Sums sums;
+  sums.apex = a.centre + (offset - normal.dot(a.centre)) * normal;  // on the plane: the lid spans no volume
+  Vec3 unused(0, 0, 0);
+  double area = 0.0;
+  for (const Polytope::Face& f : a.faces) {
+    load_face(s, a, f, Mat3::Identity(), Vec3(0, 0, 0));
+    if (clip(s, {normal, offset})) o.area -= sums.add(s.polygon, unused, area);
+  }
+  if (!(sums.volume > 0)) return {};
+  o.area = std::max(o.area.dot(normal), 0.0) * normal;
+  o.volume = sums.volume;
+  o.centroid = sums.apex + sums.moment / sums.volume;
+  o.depth = offset - normal.dot(o.centroid);
+  return o;
+}
+
+Overlap overlap_polytopes(const Polytope& a, const Polytope& b, const Mat3& rotation,
+                          const Vec3& translation) {
+  Overlap o;
+  const Vec3 centre_b = rotation * b.centre + translation;
+  if ((centre_b - a.centre).norm() >= a.radius + b.radius) return o;
+  Scratch& s = scratch();
+  Sums sums;
+  bool started = false;
+  Vec3 moment_a(0, 0, 0), moment_b(0, 0, 0);
+  double size_a = 0.0, size_b = 0.0;
+  // Faces of a and b in one plane would count twice: a is made larger by a hair, so that they lie apart.
+  const double hair = 1e-10 * (a.radius + b.radius);
+  if (!planes_near(a, Mat3::Identity(), Vec3(0, 0, 0), hair, centre_b, b.radius, s.planes)) return o;
+  const Vec3 area_b = add_faces(s, sums, started, b, rotation, translation, 0.0, moment_b, size_b);
+  if (!planes_near(b, rotation, translation, 0.0, a.centre, a.radius, s.planes)) return o;
+  const Vec3 area_a = add_faces(s, sums, started, a, Mat3::Identity(), Vec3(0, 0, 0), hair, moment_a, size_a);
+  if (!(sums.volume > 0) || !(size_a > 0) || !(size_b > 0)) return {};
+  o.volume = sums.volume;
+  o.centroid = sums.apex + sums.moment / sums.volume;
+  o.area = 0.5 * (area_b - area_a);
+  const Vec3 normal = o.area.normalized();
+  const double middle = normal.dot(o.centroid - sums.apex);
+  o.depth = std::max(std::abs(normal.dot(moment_a) / size_a - middle),
+                     std::abs(normal.dot(moment_b) / size_b - middle));
+  return o;
+}
+
+}  // namespace ejecta

@@ -1,0 +1,21 @@
+#pragma once
+#include "shape/polytope.hpp"
+
+namespace ejecta {
+
+/// The region two solids share. Axes are those of the first one, a.
+struct Overlap {
+  double volume = 0.0;     ///< m3
+  Vec3 centroid{0, 0, 0};  ///< m
+  Vec3 area{0, 0, 0};      ///< m2, vector area of b's surface inside a; its direction pushes a out of b
+  double depth = 0.0;      ///< m, of the centroid below the flatter of the two surfaces
+};
+
+/// Of a polytope with the half-space normal . x < offset.
+Overlap overlap_half_space(const Polytope& a, const Vec3& normal, double offset);
+
+/// Of two polytopes; p -> rotation * p + translation takes b's axes to a's.
+Overlap overlap_polytopes(const Polytope& a, const Polytope& b, const Mat3& rotation,
+                          const Vec3& translation);
+
+}  // namespace ejecta

@@ -1,0 +1,177 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "base/error.hpp"
+#include "dem/particles.hpp"
+#include "dem/rotation.hpp"
+#include "dem/time_step.hpp"
+
+/// Particles: who is there, and what is stored of them.
+namespace ejecta {
+namespace {
+
+constexpr std::size_t kPerBody = 19;  // numbers stored of each body
+
+void append(std::vector<double>& out, const Vec3& v) { out.insert(out.end(), v.data(), v.data() + 3); }
+
+}  // namespace
+
+int Particles::add(Body body) {
+  if (!(body.mass > 0) || !(body.inertia.minCoeff() > 0))
+    throw InputError(
+        fmt::format("body \"{}\": mass {} kg and moments of inertia must be positive", body.name, body.mass));
+  const int index = static_cast<int>(bodies_.size());
+  momentum_.push_back(body.angular_momentum());
+  for (auto* v : {&force_, &torque_, &velocity_, &spin_, &listed_at_}) v->push_back(Vec3(0, 0, 0));
+  turned_.push_back(0.0);
+  parts_.add(body, index);
+  bodies_.push_back(std::move(body));
+  relist_ = true;
+  return index;
+}
+
+void Particles::remove(int index) {
+  const int first = parts_.first_ball(index), end = parts_.first_ball(index + 1);
+  const int first_solid = parts_.first_polytope(index), end_solid = parts_.first_polytope(index + 1);
+  const auto renamed = [](int n, int from, int to) { return n < from ? n : n < to ? -1 : n - (to - from); };
+  std::vector<int> ball_names(static_cast<std::size_t>(parts_.ball_count()));
+  for (int n = 0; n < parts_.ball_count(); ++n)
+    ball_names[static_cast<std::size_t>(n)] = renamed(n, first, end);
+  solids_.rename([&](SolidPair& p) {
+    if (p.body_a == index || p.body_b == index) return false;
+    for (PartKey* k : {&p.a, &p.b}) {
+      if (k->kind == PartKind::ball) k->index = renamed(k->index, first, end);
+      if (k->kind == PartKind::polytope) k->index = renamed(k->index, first_solid, end_solid);
+    }
+    p.body_a = renamed(p.body_a, index, index + 1);
+    if (p.body_b >= 0) p.body_b = renamed(p.body_b, index, index + 1);
+    return true;
+  });
+  bodies_.erase(bodies_.begin() + index);
+  for (auto* v : {&momentum_, &force_, &torque_, &velocity_, &spin_, &listed_at_})
+    v->erase(v->begin() + index);
+  turned_.erase(turned_.begin() + index);
+  parts_.clear();
+  for (std::size_t n = 0; n < bodies_.size(); ++n) parts_.add(bodies_[n], static_cast<int>(n));
+  balls_.rename(ball_names, parts_.ball_count());
+  relist_ = true;
+}
+
+void Particles::add(Wall wall) {
+  walls_.push_back(std::move(wall));
+  relist_ = true;
+}
+
+void Particles::place(int index, const Vec3& position, const Quat& orientation, const Vec3& velocity,
+                      const Vec3& angular_velocity) {
+  const std::size_t n = static_cast<std::size_t>(index);
+  Body& b = bodies_[n];
+  b.position = position;
+  b.orientation = orientation;
+  b.velocity = velocity;
+  b.angular_velocity = angular_velocity;
+  momentum_[n] = b.angular_momentum();
+  parts_.update(index, b, velocity, angular_velocity);
+  relist_ = true;
+}
+
+void Particles::require_apart() {
+  const Candidates near = search_.find(parts_, bodies_, walls_, 0.0);
+  double worst = 0.0;
+  std::string message;
+  const auto report = [&](double overlap, double size, int a, const std::string& other, const Vec3& normal) {
+    if (!(overlap > 1e-3 * size) || !(overlap > worst)) return;
+    worst = overlap;
+    message = fmt::format(
+        "body \"{}\" overlaps {} by {:.4g} mm at the start; move it by at least that along ({:.3f}, "
+        "{:.3f}, {:.3f})",
+        bodies_[static_cast<std::size_t>(a)].name, other, 1e3 * overlap, normal.x(), normal.y(), normal.z());
+  };
+  const auto name = [&](int body) {
+    return fmt::format("body \"{}\"", bodies_[static_cast<std::size_t>(body)].name);
+  };
+  for (const auto& [i, j] : near.balls) {
+    const BallRow &a = parts_.row(i), &b = parts_.row(j);
+    const Vec3 apart = a.centre() - b.centre();
+    report(a.radius + b.radius - apart.norm(), std::min(a.radius, b.radius), parts_.body_of_ball(i),
+           name(parts_.body_of_ball(j)), apart.normalized());
+  }
+  for (const SolidPair& p : near.solids) {
+    const Touch t = find_touch(p, parts_, bodies_, walls_);
+    if (!(t.overlap > 0)) continue;
+    const std::string other =
+        p.body_b >= 0 ? name(p.body_b)
+                      : fmt::format("wall \"{}\"", walls_[static_cast<std::size_t>(p.b.index)].name);
+    report(t.thickness > 0 ? t.thickness : t.overlap, t.size, p.body_a, other, t.normal);
+  }
+  if (worst > 0) throw InputError(message);
+}
+
+std::vector<double> Particles::state() const {
+  std::vector<double> s{time_, static_cast<double>(bodies_.size()), contact_work_, outer_work_};
+  for (std::size_t n = 0; n < bodies_.size(); ++n) {
+    const Body& b = bodies_[n];
+    append(s, b.position);
+    s.insert(s.end(), b.orientation.coeffs().data(), b.orientation.coeffs().data() + 4);
+    append(s, b.velocity);
+    append(s, momentum_[n]);
+    append(s, force_[n]);
+    append(s, torque_[n]);
+  }
+  balls_.save(s);
+  solids_.save(s);
+  return s;
+}
+
+void Particles::restore(std::span<const double> s) {
+  if (s.size() < 4 || s[1] != static_cast<double>(bodies_.size()) || s.size() < 4 + kPerBody * bodies_.size())
+    throw InputError(fmt::format("the checkpoint holds {} bodies, the case {}", s.size() < 2 ? 0.0 : s[1],
+                                 bodies_.size()));
+  time_ = s[0];
+  contact_work_ = s[2];
+  outer_work_ = s[3];
+  const double* at = s.data() + 4;
+  for (std::size_t n = 0; n < bodies_.size(); ++n, at += kPerBody) {
+    Body& b = bodies_[n];
+    b.position = Vec3(at);
+    b.orientation.coeffs() = Eigen::Vector4d(at + 3);
+    b.velocity = Vec3(at + 7);
+    momentum_[n] = Vec3(at + 10);
+    force_[n] = Vec3(at + 13);
+    torque_[n] = Vec3(at + 16);
+    b.angular_velocity = angular_velocity(b.orientation, momentum_[n], b.inertia);
+    parts_.update(static_cast<int>(n), b, b.velocity, b.angular_velocity);
+  }
+  solids_.load(balls_.load(at, parts_.ball_count()));
+  relist_ = true;
+}
+
+Particles make_particles(const Case& config) {
+  const std::string directory = std::filesystem::path(config.path).parent_path();
+  const ContactSpec& contact = config.contact;
+  if (!(contact.time_step_fraction > 0 && contact.time_step_fraction <= 0.5))
+    throw InputError(
+        fmt::format("contact.time_step_fraction = {} must be in (0, 0.5]; 0.1 resolves a contact well",
+                    contact.time_step_fraction));
+  Particles particles(config.environment.gravity, Materials(config), contact);
+  for (const BodySpec& spec : config.bodies) {
+    Body body = make_body(spec, particles.materials(), directory);
+    const double limit = contact_time(body, particles.materials(), std::max(body.velocity.norm(), 1.0));
+    if (contact.time_step && !(*contact.time_step > 0 && *contact.time_step <= 0.5 * limit))
+      throw InputError(fmt::format(
+          "contact.time_step = {:.3g} s does not suit body \"{}\" of material \"{}\", whose contacts "
+          "last {:.3g} s: at most half of that is stable, {:.3g} s resolves them",
+          *contact.time_step, body.name, spec.material, limit, 0.1 * limit));
+    particles.add(std::move(body));
+  }
+  for (const WallSpec& spec : config.walls) particles.add(make_wall(spec, particles.materials(), directory));
+  const bool placed =
+      std::none_of(config.bodies.begin(), config.bodies.end(), [](const auto& b) { return b.on_belt; });
+  if (placed) particles.require_apart();
+  return particles;
+}
+
+}  // namespace ejecta

@@ -1,0 +1,84 @@
+#pragma once
+#include <array>
+#include <compare>
+#include <span>
+#include <vector>
+
+#include "dem/materials.hpp"
+#include "dem/parts.hpp"
+#include "dem/walls.hpp"
+
+namespace ejecta {
+
+enum class PartKind : int { ball, polytope, wall_plane, wall_solid };
+
+/// One side of a contact: a ball or polytope (index into Parts) or a wall (index), with its solid.
+struct PartKey {
+  PartKind kind = PartKind::ball;
+  int index = 0, solid = 0;
+  auto operator<=>(const PartKey&) const = default;
+};
+
+/// What the narrow phase returns; world axes.
+struct Touch {
+  Vec3 normal{0, 0, 1};       ///< from b to a
+  double overlap = 0.0;       ///< m, 0: apart
+  double radius = 0.0;        ///< m, effective
+  Vec3 point{0, 0, 0};        ///< m
+  double patch_radius = 0.0;  ///< m, of a flat contact (0: a point)
+  double size = 0.0;          ///< m, of the parts: scale of rolling resistance
+  double depth = 0.0;         ///< m, elastic energy over spring force; 0: as the law says
+  double thickness = 0.0;     ///< m, mean, of a flat contact
+};
+
+/// What changes in time along a contact.
+struct ContactHistory {
+  Triple<double> slip, roll;  ///< m, rad
+  double twist = 0.0;         ///< rad
+};
+
+/// A contact in which a polytope or a wall takes part.
+struct SolidPair {
+  PartKey a, b;
+  int body_a = 0, body_b = -1;  ///< -1: a wall
+  ContactHistory history;
+  Touch touch;
+  Vec3 force{0, 0, 0};      ///< N, on a
+  Vec3 moment{0, 0, 0};     ///< N m, on a besides the force's: rolling and twisting
+  double elastic = 0.0;     ///< J
+  double power = 0.0;       ///< W, taken from the bodies' motion
+  double wall_power = 0.0;  ///< W, done by the moving wall on the body
+};
+
+class SolidContacts {
+ public:
+  /// Candidates, sorted by (a, b); histories of pairs that were there before are kept.
+  void set_pairs(std::vector<SolidPair>&& pairs);
+  /// `velocity`, `spin`: of the bodies, m/s and rad/s.
+  void compute(const Parts& parts, std::span<const Body> bodies, std::span<const Wall> walls,
+               const Materials& materials, std::span<const Vec3> velocity, std::span<const Vec3> spin,
+               double dt);
+  /// Adds each contact's force and torque about the centre of mass to its bodies, in order.
+  void gather(std::span<const Body> bodies, std::span<Vec3> force, std::span<Vec3> torque) const;
+
+  std::span<const SolidPair> pairs() const { return pairs_; }
+  double elastic() const;
+  double power() const;
+  double wall_power() const;
+  void save(std::vector<double>& out) const;
+  const double* load(const double* in);
+  /// Keeps only pairs for which `rename` returns true after changing them.
+  template <class Rename>
+  void rename(const Rename& rename) {
+    std::erase_if(pairs_, [&](SolidPair& p) { return !rename(p); });
+  }
+
+ private:
+  std::vector<SolidPair> pairs_;
+};
+
+/// How two parts touch.
+Touch find_touch(const SolidPair& pair, const Parts& parts, std::span<const Body> bodies,
+                 std::span<const Wall> walls);
+
+}  // namespace ejecta
