@@ -1,5 +1,8 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "app/forecast.hpp"
 #include "base/units.hpp"
 #include "case/extent.hpp"
@@ -22,6 +25,12 @@ std::string duration_words(double seconds) {
   return fmt::format("about {:.1f} h", seconds / 3600.0);
 }
 
+/// An estimate should not look exact.
+double two_digits(double v) {
+  const double unit = std::pow(10.0, std::floor(std::log10(std::max(v, 1.0))) - 1.0);
+  return std::round(v / unit) * unit;
+}
+
 std::string length_words(double metres) { return fmt::format("{:.3g} mm", 1e3 * metres); }
 
 std::string flow_part(const Case& c, double bandwidth) {
@@ -31,10 +40,11 @@ std::string flow_part(const Case& c, double bandwidth) {
                       length_words(f.smallest_cell), length_words(f.largest_cell), 1e9 * f.smallest_volume,
                       1e9 * f.largest_volume);
   if (f.fastest > 0.0 || c.run.time_step)
-    text += fmt::format("  steps        about {} of {} ({} at Courant {}), up to {}\n", f.steps,
-                        format_quantity(f.time_step, Dimension::time).substr(0, 12),
-                        fmt::format("{:.3g} m/s", f.fastest), c.run.courant,
-                        format_quantity(c.run.end_time, Dimension::time));
+    text += fmt::format(
+        "  steps        about {:.0f} of {:.2g} us while the air moves, up to {:.3g} ms ({:.3g} m/s at "
+        "Courant {})\n",
+        two_digits(static_cast<double>(f.steps)), 1e6 * f.time_step, 1e3 * f.blows_until, f.fastest,
+        c.run.courant);
   else text += "  steps        unknown: no velocity is given, the flow makes its own\n";
   text += fmt::format("  time         {} on this machine, if no flow faster than that appears\n",
                       duration_words(expected_seconds(c, f, bandwidth)));

@@ -4,12 +4,12 @@
 #include <chrono>
 #include <cmath>
 
+#include "app/jet_source.hpp"
 #include "base/parallel.hpp"
 #include "case/expression.hpp"
 #include "case/schema.hpp"
 #include "flow/gas.hpp"
 #include "grid/grid.hpp"
-#include "sorter/nozzle.hpp"
 
 namespace ejecta {
 namespace {
@@ -18,7 +18,6 @@ bool has_flow(const Case& c) { return c.flow.solver != FlowSolver::none; }
 bool is_compressible(const Case& c) {
   return c.flow.solver == FlowSolver::compressible || c.flow.solver == FlowSolver::compressible_piso;
 }
-bool has_jet(const Case& c) { return has_flow(c) && c.boundary[4].type == BoundaryType::jet; }
 
 Grid grid_of(const Case& c) {
   const auto axis = [&](std::size_t a) {
@@ -42,23 +41,14 @@ double fastest_state(const Case& c, const StateSpec& s, const Vec3& at) {
   return fastest;
 }
 
-double ambient_or(double value, double ambient) { return value > 0.0 ? value : ambient; }
-
-/// Speed on the axis where the jet enters the box, m/s.
+/// Highest speed on the axis where the jet enters the box, m/s.
 double jet_speed(const Case& c) {
-  const Gas gas{.gamma = c.fluid.gamma, .gas_constant = c.fluid.gas_constant};
-  const NozzleExit exit =
-      nozzle_exit(gas, c.valve.supply_pressure,
-                  ambient_or(c.valve.supply_temperature, c.environment.temperature), c.environment.pressure);
-  const double at_nozzle =
-      c.jet.inlet_velocity > 0.0
-          ? c.jet.inlet_velocity
-          : nozzle_equivalent_velocity(exit, c.valve.discharge_coefficient, c.fluid.density);
-  if (c.jet.kind == JetKind::velocity_inlet) return at_nozzle;
-  const double distance =
-      c.grid.axis[2].points.front() - c.jet.nozzle[2] - c.jet.virtual_origin * c.valve.orifice_diameter;
-  return std::min(at_nozzle, at_nozzle * c.jet.velocity_decay * c.valve.orifice_diameter /
-                                 std::max(distance, c.valve.orifice_diameter));
+  const std::unique_ptr<JetSource> jet = make_jet_source(c);
+  constexpr int samples = 256;
+  double fastest = 0.0;
+  for (int n = 0; n <= samples; ++n)
+    fastest = std::max(fastest, jet->fastest(c.run.end_time * n / samples, c.grid.axis[2].points.front()));
+  return fastest;
 }
 
 double fastest_speed(const Case& c, const Grid& grid) {
@@ -75,6 +65,13 @@ double fastest_speed(const Case& c, const Grid& grid) {
   const Gas gas{.gamma = c.fluid.gamma, .gas_constant = c.fluid.gas_constant};
   if (c.flow.solver == FlowSolver::compressible) fastest += gas_sound_speed(gas, c.environment.temperature);
   return fastest;
+}
+
+/// A run that waits for its verdict computes the air until the last pulse has left the box.
+double blows_until(const Case& c) {
+  if (!has_flow(c) || !has_jet(c) || c.run.until != RunUntil::verdict) return c.run.end_time;
+  constexpr double leaves = 5e-3;  // s, several transits of the box
+  return std::min(c.run.end_time, make_jet_source(c)->dead_from() + leaves);
 }
 
 // Counted in the solvers: fields held, and field values read or written a cell and step.
@@ -127,8 +124,9 @@ Forecast forecast(const Case& c) {
   f.fastest = fastest_speed(c, grid);
   if (!c.run.time_step && f.fastest > 0.0)
     f.time_step = std::min(c.run.time_step_max, c.run.courant * f.smallest_cell / f.fastest);
+  f.blows_until = blows_until(c);
   f.steps =
-      f.time_step < c.run.end_time ? static_cast<std::int64_t>(std::ceil(c.run.end_time / f.time_step)) : 1;
+      f.time_step < f.blows_until ? static_cast<std::int64_t>(std::ceil(f.blows_until / f.time_step)) : 1;
   f.memory = 20e6 + static_cast<double>(f.cells) * held_fields(c) * sizeof(Real);
   f.disk = disk_space(c, grid, f.steps);
   return f;

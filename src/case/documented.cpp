@@ -29,6 +29,11 @@ std::string header(const Section& s) {
 std::string default_words(const Key& key) {
   if (key.required) return "required";
   if (!key.unset.empty()) return key.unset;
+  // A supply pressure is thought of as gauge: show the example where it means the default.
+  const auto* number = std::get_if<double*>(&key.slot);
+  if (number && key.dimension == Dimension::pressure_absolute && !key.example.empty() &&
+      parse_quantity(key.example.substr(1, key.example.size() - 2), key.dimension) == **number)
+    return key.example;
   const std::string value = value_text(key);
   return value.empty() ? "none" : value;
 }

@@ -45,7 +45,8 @@ std::vector<Key> keys(ContactSpec& s) {
            {0.0, 1.0, true},
            "Contact step over the smaller of Rayleigh and Hertz time",
            "usual 0.1 to 0.3"},
-          {"time_step", &s.time_step, time, positive, "Fixed contact step", "", "from time_step_fraction"},
+          {"time_step", &s.time_step, time, positive, "Fixed contact step", "", "from time_step_fraction",
+           false, "\"1 us\""},
           {"allow_tension", &s.allow_tension, none, anything,
            "Let the damped Hertz force pull at the end of a contact; false: clamped at zero, damping "
            "adjusted to keep the restitution",
@@ -78,7 +79,7 @@ std::vector<Key> keys(BodySpec& s) {
        "Cluster: spheres along each edge of `size`",
        "paper 2.2.5: 27 or 9 spheres"},
       {"sphere_diameter", &s.sphere_diameter, length, not_negative, "Cluster: diameter of each sphere",
-       "paper 2.2.5: 5 or 10 mm", "needed for a cluster"},
+       "paper 2.2.5: 5 or 10 mm", "needed for a cluster", false, "\"5 mm\""},
       {.name = "vertices",
        .slot = &s.vertices,
        .dimension = length,

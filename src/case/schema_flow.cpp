@@ -6,25 +6,25 @@ namespace ejecta {
 using enum Dimension;
 
 std::vector<Key> keys(RunSpec& s) {
-  return {
-      {.name = "title",
-       .slot = &s.title,
-       .help = "What this run is, in a line",
-       .unset = "none",
-       .example = "\"10 mm cube over one jet\""},
-      {"until", choice(s.until), none, anything, "What ends the run", ""},
-      {.name = "end_time",
-       .slot = &s.end_time,
-       .dimension = time,
-       .bounds = positive,
-       .help = "Simulated time, or the limit to it",
-       .required = true,
-       .example = "\"20 ms\""},
-      {"courant", &s.courant, none, positive, "Largest sum over the directions of |u| dt / h",
-       "paper, Eq. 6 and 2.2.4.3: 1 to 1.5"},
-      {"time_step", &s.time_step, time, positive, "Fixed flow step; otherwise it follows the Courant number",
-       "", "adaptive"},
-      {"time_step_max", &s.time_step_max, time, positive, "Upper limit of the flow step", "", "no limit"}};
+  return {{.name = "title",
+           .slot = &s.title,
+           .help = "What this run is, in a line",
+           .unset = "none",
+           .example = "\"10 mm cube over one jet\""},
+          {"until", choice(s.until), none, anything, "What ends the run", ""},
+          {.name = "end_time",
+           .slot = &s.end_time,
+           .dimension = time,
+           .bounds = positive,
+           .help = "Simulated time, or the limit to it",
+           .required = true,
+           .example = "\"20 ms\""},
+          {"courant", &s.courant, none, positive, "Largest sum over the directions of |u| dt / h",
+           "paper, Eq. 6 and 2.2.4.3: 1 to 1.5"},
+          {"time_step", &s.time_step, time, positive,
+           "Fixed flow step; otherwise it follows the Courant number", "", "adaptive", false, "\"10 us\""},
+          {"time_step_max", &s.time_step_max, time, positive, "Upper limit of the flow step", "", "no limit",
+           false, "\"0.1 ms\""}};
 }
 
 std::vector<Key> keys(EnvironmentSpec& s) {

@@ -7,7 +7,7 @@
 #include "case/findings.hpp"
 #include "case/schema.hpp"
 
-/// Run, fluid, grid, boundaries.
+/// Run, fluid, grid.
 namespace ejecta {
 namespace {
 
@@ -104,50 +104,6 @@ void sense_grid(const Case& c, Findings& found) {
   if (!c.bodies.empty())
     found.error("body.0", "axisymmetric geometry cannot hold bodies", "cartesian geometry",
                 "geometry = \"cartesian\"");
-}
-
-void sense_boundaries(const Case& c, Findings& found) {
-  if (!has_flow(c)) return;
-  for (std::size_t f = 0; f < 6; ++f) {
-    const BoundarySpec& face = c.boundary[f];
-    const std::string key = std::string("boundary.") + face_names[f];
-    const BoundarySpec& opposite = c.boundary[f ^ 1u];
-    if (face.type == BoundaryType::periodic && opposite.type != BoundaryType::periodic)
-      found.error(key + ".type",
-                  fmt::format("periodic, but {} is \"{}\"", face_names[f ^ 1u], word(opposite.type)),
-                  "both faces of the axis periodic", "type = \"periodic\"");
-    if (face.type == BoundaryType::velocity && !face.state.velocity)
-      found.error(key + ".velocity", "a velocity boundary needs its velocity",
-                  "a list of 3 velocities or formulas", "velocity = [\"3 m/s\", \"0 m/s\", \"0 m/s\"]");
-    if (face.type == BoundaryType::moving_wall && !face.state.velocity)
-      found.error(key + ".velocity", "a moving wall needs its velocity", "a list of 3 velocities or formulas",
-                  "velocity = [\"1 m/s\", \"0 m/s\", \"0 m/s\"]");
-    if (face.type == BoundaryType::wave_transmissive && is_incompressible(c))
-      found.error(key + ".type", "there is no sound in incompressible flow for a wave-transmissive boundary",
-                  "\"pressure-outlet\" or \"free-stream\"", "type = \"free-stream\"");
-    if (face.type == BoundaryType::jet && f != 4)
-      found.error(key + ".type", "the jet blows along +z and can enter through z_min only",
-                  "[boundary.z_min] type = \"jet\"", "[boundary.z_min]");
-    if (c.grid.geometry == Geometry::axisymmetric && f / 2 == 1 && face.type != BoundaryType::wall &&
-        face.type != BoundaryType::symmetry)
-      found.error(key + ".type", "the faces around the axis are cuts, not boundaries",
-                  "\"symmetry\" or nothing", "type = \"symmetry\"");
-    const std::optional<Box> box = grid_box(c);
-    for (std::size_t n = 0; n < face.patches.size() && box; ++n) {
-      const PatchSpec& patch = face.patches[n];
-      const int axis = static_cast<int>(f / 2);
-      const double plane = f % 2 == 0 ? box->low[axis] : box->high[axis];
-      const double size = (box->high - box->low).maxCoeff();
-      if (std::abs(patch.centre[axis] - plane) > 1e-6 * size)
-        found.error(fmt::format("{}.patch.{}.centre", key, n),
-                    fmt::format("the centre is not on the face, which is at {} = {}", axis_names[f / 2],
-                                format_quantity(plane, Dimension::length)),
-                    "a centre on the face");
-      else if (!box->contains(patch.centre))
-        found.error(fmt::format("{}.patch.{}.centre", key, n), "the centre lies outside the box",
-                    "a centre on the face");
-    }
-  }
 }
 
 }  // namespace ejecta

@@ -12,7 +12,11 @@ namespace ejecta {
 namespace {
 
 bool has_jet(const Case& c) {
-  return c.flow.solver != FlowSolver::none && c.boundary[4].type == BoundaryType::jet;
+  const BoundarySpec& floor = c.boundary[4];
+  return c.flow.solver != FlowSolver::none &&
+         (floor.type == BoundaryType::jet ||
+          std::any_of(floor.patches.begin(), floor.patches.end(),
+                      [](const PatchSpec& p) { return p.type == BoundaryType::jet; }));
 }
 
 std::string ms(double seconds) { return fmt::format("{:.3g} ms", 1e3 * seconds); }

@@ -2,8 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <map>
+#include <algorithm>
 #include <memory>
+#include <set>
 
 #include "base/error.hpp"
 #include "base/text.hpp"
@@ -27,21 +28,29 @@ const Node* find(const Node& root, const std::string& name) {
 
 /// What may stand behind "key = ": for a key left out, its default or else an example.
 std::string default_value(const Key& key) {
-  const std::string value = key.unset.empty() ? value_text(key) : "";
+  const std::string value = key.unset.empty() && key.example.empty() ? value_text(key) : "";
   return value.empty() ? example(key) : value;
 }
 
-std::string table_text(const Section& s, const Node& table) {
+/// The keys of one table: those the text gives and, if `all`, the others commented out.
+std::string table_text(const Section& s, const Node& table, bool all) {
   std::string text = fmt::format("\n# {}\n", s.help);
   text += fmt::format(fmt::runtime(s.repeated ? "[[{}]]\n" : "[{}]\n"), s.name);
   for (const Key& key : s.keys(0)) {
     const Node* node = table.find(key.name);
+    if (!node && !all) continue;
     const std::string assignment = node ? fmt::format("{} = {}", key.name, node->place.text())
                                         : fmt::format("# {} = {}", key.name, default_value(key));
     const std::string unset = node || key.unset.empty() ? "" : fmt::format(" (default: {})", key.unset);
     text += fmt::format("{:<52}  # {}{}\n", assignment, key.help, unset);
   }
   return text;
+}
+
+/// Sections with the same keys, such as the six faces: it is enough to list all keys once.
+std::string group(const Section& s) {
+  if (s.repeated) return s.name;
+  return s.name.starts_with("boundary.") ? "boundary" : s.name.starts_with("grid.") ? "axis" : s.name;
 }
 
 }  // namespace
@@ -69,14 +78,16 @@ std::string case_template(const std::string& kind) {
         t.help);
     Case c = documented_case();
     std::vector<std::string> unused;
+    std::set<std::string> listed;
     for (const Section& s : sections(c)) {
       const Node* node = find(root, s.name);
       if (!node && !s.name.starts_with("boundary.") && !s.name.starts_with("grid."))
         unused.push_back(header(s));
       if (!node || (!s.repeated && !node->is_table())) continue;
-      if (!s.repeated) text += table_text(s, *node);
+      if (!s.repeated) text += table_text(s, *node, listed.insert(group(s)).second);
       else
-        for (const Node& element : node->children) text += table_text(s, element);
+        for (const Node& element : node->children)
+          text += table_text(s, element, listed.insert(group(s)).second);
     }
     return text + fmt::format("\n# Other sections: {}\n", joined(unused));
   }

@@ -1,0 +1,74 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/units.hpp"
+#include "case/extent.hpp"
+#include "case/findings.hpp"
+#include "case/schema.hpp"
+
+/// What the six faces of the box may be.
+namespace ejecta {
+namespace {
+
+bool is_incompressible(const Case& c) { return c.flow.solver == FlowSolver::incompressible; }
+
+void check_face(const Case& c, std::size_t f, const std::string& key, Findings& found) {
+  const BoundarySpec& face = c.boundary[f];
+  const BoundarySpec& opposite = c.boundary[f ^ 1u];
+  if (face.type == BoundaryType::periodic && opposite.type != BoundaryType::periodic)
+    found.error(key + ".type",
+                fmt::format("periodic, but {} is \"{}\"", face_names[f ^ 1u], word(opposite.type)),
+                "both faces of the axis periodic", "type = \"periodic\"");
+  if (face.type == BoundaryType::velocity && !face.state.velocity)
+    found.error(key + ".velocity", "a velocity boundary needs its velocity",
+                "a list of 3 velocities or formulas", "velocity = [\"3 m/s\", \"0 m/s\", \"0 m/s\"]");
+  if (face.type == BoundaryType::moving_wall && !face.state.velocity)
+    found.error(key + ".velocity", "a moving wall needs its velocity", "a list of 3 velocities or formulas",
+                "velocity = [\"1 m/s\", \"0 m/s\", \"0 m/s\"]");
+  if (face.type == BoundaryType::wave_transmissive && is_incompressible(c))
+    found.error(key + ".type", "there is no sound in incompressible flow for a wave-transmissive boundary",
+                "\"pressure-outlet\" or \"free-stream\"", "type = \"free-stream\"");
+  const bool jet_patch = std::any_of(face.patches.begin(), face.patches.end(),
+                                     [](const PatchSpec& p) { return p.type == BoundaryType::jet; });
+  if ((face.type == BoundaryType::jet || jet_patch) && f != 4)
+    found.error(key + ".type", "the jet blows along +z and can enter through z_min only",
+                "[boundary.z_min] type = \"jet\"", "[boundary.z_min]");
+  if (c.grid.geometry == Geometry::axisymmetric && f / 2 == 1 && face.type != BoundaryType::wall &&
+      face.type != BoundaryType::symmetry)
+    found.error(key + ".type", "the faces around the axis are cuts, not boundaries",
+                "\"symmetry\" or nothing", "type = \"symmetry\"");
+}
+
+void check_patch(const PatchSpec& patch, const Box& box, std::size_t f, const std::string& key,
+                 Findings& found) {
+  const int axis = static_cast<int>(f / 2);
+  const double plane = f % 2 == 0 ? box.low[axis] : box.high[axis];
+  const double size = (box.high - box.low).maxCoeff();
+  if (std::abs(patch.centre[axis] - plane) > 1e-6 * size)
+    found.error(key + ".centre",
+                fmt::format("the centre is not on the face, which is at {} = {}", axis_names[f / 2],
+                            format_quantity(plane, Dimension::length)),
+                "a centre on the face");
+  else if (!box.contains(patch.centre))
+    found.error(key + ".centre", "the centre lies outside the box", "a centre on the face");
+  if (patch.type == BoundaryType::velocity && !patch.state.velocity)
+    found.error(key + ".velocity", "a velocity patch needs its velocity",
+                "a list of 3 velocities or formulas", "velocity = [\"0 m/s\", \"0 m/s\", \"200 m/s\"]");
+}
+
+}  // namespace
+
+void sense_boundaries(const Case& c, Findings& found) {
+  if (c.flow.solver == FlowSolver::none) return;
+  const std::optional<Box> box = grid_box(c);
+  for (std::size_t f = 0; f < 6; ++f) {
+    const std::string key = std::string("boundary.") + face_names[f];
+    check_face(c, f, key, found);
+    for (std::size_t n = 0; n < c.boundary[f].patches.size() && box; ++n)
+      check_patch(c.boundary[f].patches[n], *box, f, fmt::format("{}.patch.{}", key, n), found);
+  }
+}
+
+}  // namespace ejecta
