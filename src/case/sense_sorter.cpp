@@ -69,7 +69,7 @@ void sense_sorter(const Case& c, Findings& found) {
       found.error("valve.supply_pressure", "the supply is not above the ambient pressure: nothing flows",
                   "more than ambient", "supply_pressure = \"700 kPa gauge\"");
     const double bottom = c.grid.axis[2].points.empty() ? 0.0 : c.grid.axis[2].points.front();
-    if (c.jet.kind == JetKind::self_similar &&
+    if (c.flow.solver == FlowSolver::incompressible && c.jet.kind == JetKind::self_similar &&
         bottom - c.jet.nozzle[2] - c.jet.virtual_origin * v.orifice_diameter < 10.0 * v.orifice_diameter)
       found.error("jet.kind", "a self-similar jet needs the box to begin well above the nozzle",
                   "at least 10 orifice diameters between jet.nozzle and z_min, or kind = \"velocity-inlet\"",
