@@ -46,3 +46,8 @@ foreach(report "one,sample" "two,sample,pushed" "jet,jet")
                       ${CMAKE_BINARY_DIR}/report/node_modules ${CMAKE_BINARY_DIR}/tests/screenshots ${html} ${parts})
   set_tests_properties(output.browser_${name} PROPERTIES FIXTURES_REQUIRED report_${name} RUN_SERIAL ON)
 endforeach()
+
+include(${PROJECT_SOURCE_DIR}/cmake/fuzz.cmake)
+ejecta_fuzz(checkpoint
+  SOURCES output/checkpoint.cpp output/checkpoint_seal.cpp output/output_file.cpp output/sha256.cpp
+  INCLUDES ${HDF5_INCLUDE_DIRS} LIBS ${HDF5_C_LIBRARIES} -lfmt)
