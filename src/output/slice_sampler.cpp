@@ -29,42 +29,60 @@ SliceSampler::SliceSampler(const Grid& grid, const SliceRaster& raster) : raster
   std::size_t side = 0;
   for (int d = 0; d < 3; ++d) {
     if (d == raster.axis) continue;
+    direction_[side] = d;
     const int pixels = raster.pixels[side];
     const double size = (raster.upper[side] - raster.lower[side]) / pixels;
     for (int p = 0; p < pixels; ++p)
       across_[side].push_back(stencil(grid.axis(d), raster.lower[side] + (p + 0.5) * size, mirror(d)));
     ++side;
   }
+  line_cells_ = grid.n(direction_[0]);
+  lines_.resize(3 * static_cast<std::size_t>(line_cells_) * across_[1].size());
   speed_.resize(across_[0].size() * across_[1].size());
 }
 
 void SliceSampler::sample(ConstFieldView u, ConstFieldView v, ConstFieldView w, SliceFrame& out) {
+  const std::array<ConstFieldView, 3> velocity{u, v, w};
   const std::size_t width = across_[0].size();
+  const auto cells = static_cast<std::size_t>(line_cells_);
+  const auto normal = static_cast<std::size_t>(raster_.axis);
+  const auto first = static_cast<std::size_t>(direction_[0]),
+             second = static_cast<std::size_t>(direction_[1]);
+
   const auto row = [&](int q) {
-    std::array<Stencil, 3> at;
-    const std::size_t axis = static_cast<std::size_t>(raster_.axis);
-    const std::size_t first = axis == 0 ? 1 : 0, second = axis == 2 ? 1 : 2;
-    at[axis] = normal_;
-    at[second] = across_[1][static_cast<std::size_t>(q)];
+    Real* speed = speed_.data() + static_cast<std::size_t>(q) * width;
+    const Stencil& across = across_[1][static_cast<std::size_t>(q)];
+    if (normal_.cell < 0 || across.cell < 0) {
+      std::fill_n(speed, width, Real(0));
+      return;
+    }
+    // First the cells' values along the row's line, blended from the four lines around it; then the pixels.
+    Real* line = lines_.data() + 3 * cells * static_cast<std::size_t>(q);
+    for (std::size_t c = 0; c < 3; ++c)
+      for (int n = 0; n < line_cells_; ++n) {
+        const auto at = [&](int i, int j) {
+          std::array<int, 3> index{};
+          index[first] = n;
+          index[normal] = i;
+          index[second] = j;
+          return velocity[c](index[0], index[1], index[2]);
+        };
+        const Real near = (1 - across.weight) * at(normal_.cell, across.cell) +
+                          across.weight * at(normal_.cell, across.next);
+        const Real far = (1 - across.weight) * at(normal_.next, across.cell) +
+                         across.weight * at(normal_.next, across.next);
+        line[c * cells + static_cast<std::size_t>(n)] = (1 - normal_.weight) * near + normal_.weight * far;
+      }
     for (std::size_t p = 0; p < width; ++p) {
-      at[first] = across_[0][p];
-      Real sum[3] = {0, 0, 0};
-      if (at[0].cell >= 0 && at[1].cell >= 0 && at[2].cell >= 0)
-        for (int corner = 0; corner < 8; ++corner) {
-          Real weight = 1;
-          int index[3];
-          for (std::size_t d = 0; d < 3; ++d) {
-            const bool next = corner >> d & 1;
-            weight *= next ? at[d].weight : 1 - at[d].weight;
-            index[d] = next ? at[d].next : at[d].cell;
-          }
-          if (weight == 0) continue;
-          sum[0] += weight * u(index[0], index[1], index[2]);
-          sum[1] += weight * v(index[0], index[1], index[2]);
-          sum[2] += weight * w(index[0], index[1], index[2]);
+      const Stencil& along = across_[0][p];
+      Real sum = 0;
+      if (along.cell >= 0)
+        for (std::size_t c = 0; c < 3; ++c) {
+          const Real* values = line + c * cells;
+          const Real value = (1 - along.weight) * values[along.cell] + along.weight * values[along.next];
+          sum += value * value;
         }
-      speed_[static_cast<std::size_t>(q) * width + p] =
-          std::sqrt(sum[0] * sum[0] + sum[1] * sum[1] + sum[2] * sum[2]);
+      speed[p] = std::sqrt(sum);
     }
   };
   for_each_index(static_cast<int>(across_[1].size()), row);

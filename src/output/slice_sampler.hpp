@@ -25,6 +25,9 @@ class SliceSampler {
   SliceRaster raster_;
   Stencil normal_;
   std::array<std::vector<Stencil>, 2> across_;
+  std::array<int, 2> direction_{0, 2};  // axes of the raster's two directions
+  int line_cells_ = 0;
+  std::vector<Real> lines_;  // of each raster row: u, v, w at the cells along the first direction
   std::vector<Real> speed_;
 };
 
