@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <numeric>
 
 #include "dem/blocks.hpp"
 #include "dem/lanes.hpp"
@@ -9,7 +10,7 @@
 namespace ejecta {
 namespace {
 
-constexpr int kBlock = 64;  // groups of eight pairs one thread takes at a time; sums are kept by block
+constexpr int kBlock = 128;  // groups of eight pairs one thread takes at a time; sums are kept by block
 
 /// Lanes at any address.
 using LooseLanes = double __attribute__((vector_size(kLanes * sizeof(double)), aligned(8), may_alias));
@@ -103,15 +104,12 @@ bool none(const Index& mask) {
 template <class Law, bool Rolling>
 void BallContacts::compute_all(const Parts& parts, const Materials& materials, double dt) {
   const BallRow* balls = parts.rows().data();
-  const int groups = static_cast<int>(a_.size()) / kLanes, blocks = block_count(groups, kBlock);
+  const int groups = static_cast<int>(a_.size()) / kLanes;
   const bool one_material = materials.count() == 1, allow_tension = materials.allow_tension();
   PairConstants<Lanes> constants;
   if (one_material) constants = load_constants(materials, BallLanes{}, BallLanes{});
-  block_elastic_.resize(at(blocks));
-  block_power_.resize(at(blocks));
 
-  for_each_block(groups, kBlock, [&](int block, int begin, int end) {
-    Lanes elastic{}, power{};
+  for_each_block(groups, kBlock, [&](int, int begin, int end) {
     for (int group = begin; group < end; ++group) {
       const std::size_t n = at(group) * kLanes;
       const BallLanes a = load_balls(balls, a_.data() + n), b = load_balls(balls, b_.data() + n);
@@ -138,18 +136,14 @@ void BallContacts::compute_all(const Parts& parts, const Materials& materials, d
         const ContactForce<Lanes> f = contact_force<Law>(c, p, allow_tension, dt, slip);
         store3(history_, n, select(touching, slip));
         const Triple<Lanes> force = select(touching, f.force), turning = cross(c.normal, force);
-        Lanes work = dot(force, c.velocity);
         if constexpr (Rolling) {
           Triple<Lanes> roll = load3(history_ + 3, n);
           const Triple<Lanes> spin = a.spin - b.spin;
           const Triple<Lanes> moment = select(touching, rolling_moment(c, p, f, spin, dt, roll));
           store3(history_ + 3, n, select(touching, roll));
           store3(moments_, n, moment);
-          work += dot(moment, spin);
         }
         const Lanes zero{};
-        elastic += touching ? f.elastic_normal + f.elastic_tangential : zero;
-        power -= touching ? work : zero;
         out[0] = force.x;
         out[1] = force.y;
         out[2] = force.z;
@@ -157,23 +151,12 @@ void BallContacts::compute_all(const Parts& parts, const Materials& materials, d
         out[4] = touching ? turning.x : zero;
         out[5] = touching ? turning.y : zero;
         out[6] = touching ? turning.z : zero;
+        out[7] = touching ? f.elastic_normal + f.elastic_tangential : zero;
         transpose(out);
       }
       for (int k = 0; k < kLanes; ++k) *reinterpret_cast<LooseLanes*>(&rows_[n + at(k)].fx) = out[k];
     }
-    double sum_elastic = 0, sum_power = 0;
-    for (int k = 0; k < kLanes; ++k) {
-      sum_elastic += elastic[k];
-      sum_power += power[k];
-    }
-    block_elastic_[at(block)] = sum_elastic;
-    block_power_[at(block)] = sum_power;
   });
-  elastic_ = power_ = 0.0;
-  for (int b = 0; b < blocks; ++b) {
-    elastic_ += block_elastic_[at(b)];
-    power_ += block_power_[at(b)];
-  }
 }
 
 void BallContacts::compute(const Parts& parts, const Materials& materials, double dt) {
@@ -246,6 +229,11 @@ void BallContacts::set_pairs(const std::vector<std::pair<int, int>>& pairs, int 
   b_ = std::move(b);
   for (int k = 0; k < 6; ++k) history_[k] = std::move(history[k]);
   index_pairs(balls);
+}
+
+double BallContacts::elastic() const {
+  return std::accumulate(rows_.begin(), rows_.end(), 0.0,
+                         [](double sum, const PairRow& r) { return sum + r.elastic; });
 }
 
 void BallContacts::rename(std::span<const int> names, int balls) {

@@ -16,7 +16,7 @@ class BallContacts {
     double fx = 0, fy = 0, fz = 0;  ///< N, on a
     double half_overlap = 0;        ///< m, 0: apart
     double gx = 0, gy = 0, gz = 0;  ///< N, normal (from b to a) x force
-    double unused = 0;
+    double elastic = 0;             ///< J
   };
 
   /// Candidate pairs of balls (a < b), sorted. Histories of pairs that were there before are kept.
@@ -26,8 +26,7 @@ class BallContacts {
   /// Adds the force and the torque about the ball's centre that act on it.
   void gather(const Parts& parts, int ball, Vec3& force, Vec3& torque) const;
 
-  double elastic() const { return elastic_; }  ///< J
-  double power() const { return power_; }      ///< W, taken from the bodies' motion by the contacts
+  double elastic() const;  ///< J
 
   int pair_count() const { return count_; }
   std::pair<int, int> pair(int n) const { return {a_[at(n)], b_[at(n)]}; }
@@ -51,8 +50,6 @@ class BallContacts {
   std::vector<PairRow> rows_;
   std::vector<double> moments_[3];                    // N m, rolling resistance on a
   std::vector<int> first_own_, first_other_, other_;  // pairs of a ball as a (a range) and as b (a list)
-  std::vector<double> block_elastic_, block_power_;
-  double elastic_ = 0.0, power_ = 0.0;
   bool rolling_ = false;
 };
 

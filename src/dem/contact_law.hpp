@@ -31,6 +31,7 @@ struct ContactForce {
   T normal{};                ///< N, its normal part, >= 0 unless tension is allowed
   T spring{};                ///< N, the normal spring alone
   T tangential_stiffness{};  ///< N/m
+  T dashpot{}, drag{};       ///< N s/m, normal and tangential
   T elastic_normal{};        ///< J, stored in the normal spring
   T elastic_tangential{};    ///< J
 };
@@ -108,6 +109,8 @@ ContactForce<T> contact_force(const Contact<T>& c, const PairConstants<T>& p, bo
   f.force = normal * c.normal + tangential;
   f.normal = normal;
   f.tangential_stiffness = s.tangential;
+  f.dashpot = dashpot;
+  f.drag = drag;
   f.spring = s.secant * c.overlap;
   f.elastic_normal = s.energy;
   f.elastic_tangential = 0.5 * s.tangential * dot(slip, slip);
@@ -129,16 +132,28 @@ Triple<T> rolling_moment(const Contact<T>& c, const PairConstants<T>& p, const C
   return (T{} - stiffness) * roll;
 }
 
-/// Friction against twisting about the normal of a flat patch of radius a under even pressure: springs of the
-/// tangential stiffness spread over the patch give k_t a^2 / 2; all of it slides at 2/3 mu F_n a.
-/// `twist`: angle (rad), history. Returns the moment on a about the normal, N m.
-inline double twisting_moment(double patch_radius, const PairConstants<double>& p,
-                              const ContactForce<double>& f, double spin, double dt, double& twist) {
-  const double stiffness = 0.5 * f.tangential_stiffness * patch_radius * patch_radius;
-  if (!(stiffness > 0)) return 0.0;
-  const double limit = 2.0 / 3.0 * p.friction * larger(f.normal, 0.0) * patch_radius / stiffness;
-  twist = smaller(larger(twist + dt * spin, -limit), limit);
-  return -stiffness * twist;
+/// Moment of a flat contact, of springs and dashpots spread evenly over a round patch of radius a. Returns
+/// what acts on a, N m; `spin`: angular velocity of a relative to b, rad/s. Twisting about the normal: second
+/// moment a^2/2 times tangential stiffness and drag, cut where all of the patch slides, 2/3 mu F_n a;
+/// `twist`: angle (rad), history. Tilting: second moment a^2/4 times the dashpot (the spring is in the place
+/// of the contact point), cut at F_n a, beyond which the load would lie outside the patch.
+inline Triple<double> patch_moment(double a, const Triple<double>& normal, const PairConstants<double>& p,
+                                   const ContactForce<double>& f, const Triple<double>& spin, double dt,
+                                   double& twist) {
+  const double stiffness = 0.5 * f.tangential_stiffness * a * a;
+  if (!(stiffness > 0)) return {};
+  const double pressing = larger(f.normal, 0.0), twisting = dot(spin, normal);
+  const double limit = 2.0 / 3.0 * p.friction * pressing * a;
+  twist += dt * twisting;
+  double about_normal = -stiffness * twist - 0.5 * a * a * f.drag * twisting;
+  if (about_normal > limit || about_normal < -limit) {
+    about_normal = about_normal > 0 ? limit : -limit;
+    twist = -about_normal / stiffness;
+  }
+  const Triple<double> tilting = spin - twisting * normal;
+  const double damping = 0.25 * a * a * f.dashpot, size = damping * root(dot(tilting, tilting));
+  const double cut = size > pressing * a ? pressing * a / size : 1.0;
+  return about_normal * normal + (-cut * damping) * tilting;
 }
 
 }  // namespace ejecta

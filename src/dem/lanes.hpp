@@ -29,6 +29,7 @@ template <class T>
 struct Triple {
   T x{}, y{}, z{};
 
+  bool operator==(const Triple&) const = default;
   Triple& operator+=(const Triple& o) {
     x += o.x;
     y += o.y;

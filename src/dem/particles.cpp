@@ -14,7 +14,7 @@
 namespace ejecta {
 namespace {
 
-constexpr int kBlock = 128;             // bodies one thread moves at a time; sums are kept by block
+constexpr int kBlock = 512;             // bodies one thread moves at a time; sums are kept by block
 constexpr double kSlowest = 0.1;        // m/s, impact speed the step is made for at least
 constexpr int kStepsBetweenLists = 20;  // aimed at when the skin is chosen
 
@@ -59,6 +59,7 @@ Vec3 Particles::torque_on(std::size_t n, std::span<const Load> loads) const {
 
 /// Velocity Verlet (Swope et al. 1982, J. Chem. Phys. 76:637): half a kick, drift, new forces, half a kick.
 void Particles::substep(double dt, std::span<const Load> loads) {
+  add_work(0.5 * dt);
   drift(dt, loads);
   find_contacts(dt);
   kick(dt, loads);
@@ -148,26 +149,39 @@ void Particles::kick(double dt, std::span<const Load> loads) {
     }
   });
   solids_.gather(bodies_, force_, torque_);
+  // With velocities at the whole step, half of this power over dt before it and half after is exactly the
+  // change of kinetic energy.
   for_each_block(count, kBlock, [&](int block, int begin, int end) {
-    double work = 0.0;
+    Work work;
     for (int i = begin; i < end; ++i) {
       const std::size_t n = static_cast<std::size_t>(i);
       Body& b = bodies_[n];
       if (!moves(b)) continue;
-      if (b.motion == Motion::free) {
+      const bool pushed = b.motion == Motion::free;
+      if (pushed) {
         b.velocity += 0.5 * dt * acceleration(n, loads);
         momentum_[n] += 0.5 * dt * torque_on(n, loads);
-        if (!loads.empty()) work += loads[n].force.dot(velocity_[n]) + loads[n].torque.dot(spin_[n]);
-      } else {
-        work -= force_[n].dot(velocity_[n]) + torque_[n].dot(spin_[n]);  // what keeps it on its course
       }
       b.angular_velocity = angular_velocity(b.orientation, momentum_[n], b.inertia);
+      const double by_contacts = force_[n].dot(b.velocity) + torque_[n].dot(b.angular_velocity);
+      work.into_contacts -= by_contacts;
+      if (!pushed) work.from_outside -= by_contacts;  // what keeps a prescribed body on its course
+      if (pushed && !loads.empty())
+        work.from_outside += loads[n].force.dot(b.velocity) + loads[n].torque.dot(b.angular_velocity);
     }
     block_work_[static_cast<std::size_t>(block)] = work;
   });
-  for (const double work : block_work_) outer_work_ += dt * work;
-  outer_work_ += dt * solids_.wall_power();
-  contact_work_ += dt * (balls_.power() + solids_.power());
+  power_ = {solids_.wall_power(), solids_.wall_power()};
+  for (const Work& work : block_work_) {
+    power_.into_contacts += work.into_contacts;
+    power_.from_outside += work.from_outside;
+  }
+  add_work(0.5 * dt);
+}
+
+void Particles::add_work(double dt) {
+  contact_work_ += dt * power_.into_contacts;
+  outer_work_ += dt * power_.from_outside;
 }
 
 DemEnergy Particles::energy() const {

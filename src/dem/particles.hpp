@@ -70,6 +70,7 @@ class Particles {
   void substep(double dt, std::span<const Load> loads);
   void drift(double dt, std::span<const Load> loads);
   void kick(double dt, std::span<const Load> loads);
+  void add_work(double dt);
   void find_contacts(double dt);
   bool moves(const Body& body) const;
   Vec3 acceleration(std::size_t n, std::span<const Load> loads) const;
@@ -88,7 +89,12 @@ class Particles {
   std::vector<Vec3> velocity_, spin_;  // as the contact laws see them: extrapolated to the whole step
   std::vector<Vec3> listed_at_;        // positions for which candidates were listed
   std::vector<double> turned_;         // m, no part of a body has moved farther by its turning since
-  std::vector<double> block_moved_, block_work_;
+  struct Work {
+    double into_contacts = 0.0, from_outside = 0.0;  // W
+  };
+  std::vector<double> block_moved_;
+  std::vector<Work> block_work_;
+  Work power_;  // at the last sub-step
   Parts parts_;
   CandidateSearch search_;
   BallContacts balls_;

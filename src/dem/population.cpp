@@ -13,6 +13,7 @@
 namespace ejecta {
 namespace {
 
+constexpr std::size_t kHead = 6;      // numbers stored before the bodies
 constexpr std::size_t kPerBody = 19;  // numbers stored of each body
 
 void append(std::vector<double>& out, const Vec3& v) { out.insert(out.end(), v.data(), v.data() + 3); }
@@ -111,7 +112,12 @@ void Particles::require_apart() {
 }
 
 std::vector<double> Particles::state() const {
-  std::vector<double> s{time_, static_cast<double>(bodies_.size()), contact_work_, outer_work_};
+  std::vector<double> s{time_,
+                        static_cast<double>(bodies_.size()),
+                        contact_work_,
+                        outer_work_,
+                        power_.into_contacts,
+                        power_.from_outside};
   for (std::size_t n = 0; n < bodies_.size(); ++n) {
     const Body& b = bodies_[n];
     append(s, b.position);
@@ -127,13 +133,15 @@ std::vector<double> Particles::state() const {
 }
 
 void Particles::restore(std::span<const double> s) {
-  if (s.size() < 4 || s[1] != static_cast<double>(bodies_.size()) || s.size() < 4 + kPerBody * bodies_.size())
+  if (s.size() < kHead || s[1] != static_cast<double>(bodies_.size()) ||
+      s.size() < kHead + kPerBody * bodies_.size())
     throw InputError(fmt::format("the checkpoint holds {} bodies, the case {}", s.size() < 2 ? 0.0 : s[1],
                                  bodies_.size()));
   time_ = s[0];
   contact_work_ = s[2];
   outer_work_ = s[3];
-  const double* at = s.data() + 4;
+  power_ = {s[4], s[5]};
+  const double* at = s.data() + kHead;
   for (std::size_t n = 0; n < bodies_.size(); ++n, at += kPerBody) {
     Body& b = bodies_[n];
     b.position = Vec3(at);

@@ -8,7 +8,7 @@
 namespace ejecta {
 namespace {
 
-constexpr int kBlock = 16;  // pairs one thread takes at a time
+constexpr int kBlock = 32;  // pairs one thread takes at a time
 
 Triple<double> triple(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
 Vec3 vec(const Triple<double>& t) { return {t.x, t.y, t.z}; }
@@ -32,14 +32,13 @@ void apply_law(SolidPair& pair, const Side& a, const Side& b, const Materials& m
                                      : contact_force<HertzMindlin>(c, p, tension, dt, h.slip);
   const Vec3 spin = a.spin - b.spin;
   pair.force = vec(f.force);
-  pair.moment = twisting_moment(t.patch_radius, p, f, spin.dot(t.normal), dt, h.twist) * t.normal;
+  pair.moment = vec(patch_moment(t.patch_radius, c.normal, p, f, triple(spin), dt, h.twist));
   if (p.rolling > 0) {
     c.radius = t.size;
     pair.moment += vec(rolling_moment(c, p, f, triple(spin), dt, h.roll));
   }
   const double twisting = 0.25 * f.tangential_stiffness * t.patch_radius * t.patch_radius * h.twist * h.twist;
   pair.elastic = (t.depth > 0 ? f.spring * t.depth : f.elastic_normal) + f.elastic_tangential + twisting;
-  pair.power = -pair.force.dot(a.velocity - b.velocity) - pair.moment.dot(spin);
   pair.wall_power = pair.body_b < 0 ? pair.force.dot(b.velocity) : 0.0;
 }
 
@@ -67,7 +66,7 @@ void SolidContacts::compute(const Parts& parts, std::span<const Body> bodies, st
     pair.touch = find_touch(pair, parts, bodies, walls);
     pair.force.setZero();
     pair.moment.setZero();
-    pair.elastic = pair.power = pair.wall_power = 0.0;
+    pair.elastic = pair.wall_power = 0.0;
     if (!(pair.touch.overlap > 0)) {
       pair.history = {};
       return;
@@ -104,19 +103,17 @@ double SolidContacts::elastic() const {
                          [](double s, const SolidPair& p) { return s + p.elastic; });
 }
 
-double SolidContacts::power() const {
-  return std::accumulate(pairs_.begin(), pairs_.end(), 0.0,
-                         [](double s, const SolidPair& p) { return s + p.power; });
-}
-
 double SolidContacts::wall_power() const {
   return std::accumulate(pairs_.begin(), pairs_.end(), 0.0,
                          [](double s, const SolidPair& p) { return s + p.wall_power; });
 }
 
 void SolidContacts::save(std::vector<double>& out) const {
-  out.push_back(static_cast<double>(pairs_.size()));
+  const std::size_t head = out.size();
+  out.push_back(0);
   for (const SolidPair& p : pairs_) {
+    if (p.history == ContactHistory{}) continue;
+    out[head] += 1;
     for (const PartKey& k : {p.a, p.b})
       for (const int v : {static_cast<int>(k.kind), k.index, k.solid}) out.push_back(v);
     out.push_back(p.body_a);

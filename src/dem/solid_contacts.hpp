@@ -35,6 +35,7 @@ struct Touch {
 struct ContactHistory {
   Triple<double> slip, roll;  ///< m, rad
   double twist = 0.0;         ///< rad
+  bool operator==(const ContactHistory&) const = default;
 };
 
 /// A contact in which a polytope or a wall takes part.
@@ -46,7 +47,6 @@ struct SolidPair {
   Vec3 force{0, 0, 0};      ///< N, on a
   Vec3 moment{0, 0, 0};     ///< N m, on a besides the force's: rolling and twisting
   double elastic = 0.0;     ///< J
-  double power = 0.0;       ///< W, taken from the bodies' motion
   double wall_power = 0.0;  ///< W, done by the moving wall on the body
 };
 
@@ -63,7 +63,6 @@ class SolidContacts {
 
   std::span<const SolidPair> pairs() const { return pairs_; }
   double elastic() const;
-  double power() const;
   double wall_power() const;
   void save(std::vector<double>& out) const;
   const double* load(const double* in);

@@ -35,7 +35,7 @@ double contact_time(const Body& body, const Materials& materials, double velocit
   if (!body.shape.polytopes().empty()) {
     const double size = std::cbrt(0.75 / std::numbers::pi * body.shape.mass_properties().volume);
     const double face = 2 * (4.0 / 3.0) * youngs * size / std::numbers::sqrt2;  // N/m, narrow_phase.cpp
-    time = std::min({time, std::numbers::pi * std::sqrt(mass / face),
+    time = std::min({time, 0.5 * std::numbers::pi * std::sqrt(mass / face),
                      rayleigh_time(size, m.density, m.youngs_modulus, m.poisson_ratio)});
   }
   return time;

@@ -16,7 +16,8 @@ double rayleigh_time(double radius, double density, double youngs_modulus, doubl
 double hertz_time(double mass, double radius, double youngs, double velocity);
 
 /// What limits the step of a body: the smallest of its Rayleigh time, the duration of its impacts at
-/// `velocity` and, with flat faces, half the period on an elastic foundation. s.
+/// `velocity` and, with flat faces, a quarter of the period on an elastic foundation
+/// (whose force sets in with a kink). s.
 double contact_time(const Body& body, const Materials& materials, double velocity);
 
 }  // namespace ejecta

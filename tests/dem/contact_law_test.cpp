@@ -94,15 +94,15 @@ TEST(ContactLaw, RollingAndTwistingStopAtTheirLimits) {
   double twist = 0;
   const auto c = contact(1e-5, {0, 0, 0});
   const auto f = contact_force<HertzMindlin>(c, kPair, false, 1e-4, slip);
-  D moment;
-  double about_normal = 0;
+  D rolling, patch;
   for (int n = 0; n < 1000; ++n) {
-    moment = rolling_moment(c, kPair, f, D{10, 0, 3}, 1e-4, roll);
-    about_normal = twisting_moment(1e-3, kPair, f, 3, 1e-4, twist);
+    rolling = rolling_moment(c, kPair, f, D{10, 0, 3}, 1e-4, roll);
+    patch = patch_moment(1e-3, c.normal, kPair, f, D{10, 0, 3}, 1e-4, twist);
   }
-  EXPECT_NEAR(moment.x, -0.1 * 2e-3 * f.normal, 1e-15);
-  EXPECT_EQ(moment.z, 0.0);
-  EXPECT_NEAR(about_normal, -2.0 / 3.0 * 0.4 * f.normal * 1e-3, 1e-15);
+  EXPECT_NEAR(rolling.x, -0.1 * 2e-3 * f.normal, 1e-15);
+  EXPECT_EQ(rolling.z, 0.0);
+  EXPECT_NEAR(patch.z, -2.0 / 3.0 * 0.4 * f.normal * 1e-3, 1e-15);
+  EXPECT_NEAR(patch.x, -std::min(f.normal * 1e-3, 0.25e-6 * f.dashpot * 10), 1e-15);
 }
 
 }  // namespace

@@ -189,11 +189,13 @@ TEST(Collision, MomentumIsConservedAndTheLedgerCloses) {
   const double energy = p.energy().ledger();
   double scale = 0;
   for (const Body& b : p.bodies()) scale += b.mass * b.velocity.norm();
-  p.advance(0.05);
+  for (int n = 0; n < 20; ++n) {
+    p.advance(1e-3);
+    EXPECT_NEAR(p.energy().ledger(), energy, 1e-3 * energy);
+  }
   EXPECT_LT((momentum() - before).norm(), 1e-13 * scale);
   EXPECT_LT((angular() - turning).norm(), 1e-12 * scale * 0.04);
   EXPECT_GT(p.energy().dissipated, 0.3 * energy);
-  EXPECT_NEAR(p.energy().ledger(), energy, 1e-3 * energy);
 }
 
 }  // namespace
