@@ -99,8 +99,8 @@ const std::vector<Entry>& table() {
        "2700 kg/m3",
        {{"kg/m3", 1, 1, 0, true}, {"g/cm3", 1e3}, {"t/m3", 1e3}, {"kg/L", 1e3}}},
       {force, "a force", "0.5 N", {{"N", 1, 1, 0, true}, {"mN", 1, 1e3, 0, true}, {"kN", 1e3, 1, 0, true}}},
-      {pressure_gauge, "a pressure, gauge or absolute", "0 Pa gauge", pressure_units()},
-      {pressure_absolute, "a pressure, gauge or absolute", "700 kPa gauge", pressure_units()},
+      {pressure_gauge, "a pressure", "0 Pa gauge", pressure_units()},
+      {pressure_absolute, "a pressure", "700 kPa gauge", pressure_units()},
       {pressure, "a pressure difference or modulus", "5 MPa", pressure_units()},
       {temperature,
        "a temperature",
@@ -115,6 +115,7 @@ const std::vector<Entry>& table() {
        {{"Pa s", 1, 1, 0, true},
         {"Pa.s", 1},
         {"mPa s", 1, 1e3},
+        {"uPa s", 1, 1e6},
         {"kg/m/s", 1},
         {"cP", 1, 1e3},
         {"P", 1, 10}}},
@@ -174,8 +175,6 @@ std::pair<std::optional<double>, std::string_view> split(std::string_view text) 
   return {value, trim(text.substr(static_cast<std::size_t>(end - text.data())))};
 }
 
-std::string list_units(Dimension d) { return joined(known_units(d)); }
-
 }  // namespace
 
 std::string_view si_unit(Dimension d) { return entry(d).units.empty() ? "" : entry(d).units.front().name; }
@@ -188,6 +187,12 @@ std::vector<std::string> known_units(Dimension d) {
       for (std::string_view word : {gauge, absolute}) names.push_back(fmt::format("{} {}", u.name, word));
   }
   return names;
+}
+
+std::string unit_words(Dimension d) {
+  std::vector<std::string> names;
+  for (const Unit& u : entry(d).units) names.emplace_back(u.name);
+  return joined(names) + (is_referred(d) ? ", each gauge or absolute" : "");
 }
 
 std::string_view describe(Dimension d) { return entry(d).words; }
@@ -205,7 +210,7 @@ double parse_quantity(std::string_view text, Dimension d, double ambient) {
   const auto [value, rest] = split(text);
   if (!value) throw InputError(fmt::format("\"{}\" does not start with a finite number", text));
   if (rest.empty())
-    throw InputError(fmt::format("\"{}\" has no unit (known units: {})", text, list_units(d)));
+    throw InputError(fmt::format("\"{}\" has no unit (known units: {})", text, unit_words(d)));
   std::string_view unit = rest;
   const std::string_view reference = take_reference(unit);
   const Unit* u = find_unit(unit, d);
@@ -213,7 +218,7 @@ double parse_quantity(std::string_view text, Dimension d, double ambient) {
     const std::string close = nearest(rest, known_units(d));
     throw InputError(fmt::format("unknown unit \"{}\"{} (known units: {})", rest,
                                  close.empty() ? "" : fmt::format(", nearest is \"{}\"", close),
-                                 list_units(d)));
+                                 unit_words(d)));
   }
   const double si = apply(*u, *value);
   if (!std::isfinite(si)) throw InputError(fmt::format("\"{}\" is too large", text));

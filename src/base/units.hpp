@@ -36,10 +36,12 @@ enum class Dimension {
 std::string_view si_unit(Dimension d);
 /// All units understood for a dimension, SI first, e.g. {"m", "mm", "um", "cm", "in"}.
 std::vector<std::string> known_units(Dimension d);
+/// The same for a reader, e.g. "m, mm, um", "Pa, kPa, bar, each gauge or absolute".
+std::string unit_words(Dimension d);
 /// Factor to SI, or nothing for a unit that does not fit. Temperatures in C need the offset of to_si.
 std::optional<double> to_si(double value, std::string_view unit, Dimension d);
 
-/// In words, e.g. "a time", "a pressure (gauge or absolute)".
+/// In words, e.g. "a time", "a pressure".
 std::string_view describe(Dimension d);
 /// A quantity as one writes it, e.g. "8 ms"; used in error messages.
 std::string_view example(Dimension d);

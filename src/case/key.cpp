@@ -103,7 +103,7 @@ struct TypeWords {
   Dimension d;
   std::string one() const { return std::string(describe(d)); }
   std::string many() const {
-    return d == Dimension::none ? "numbers" : fmt::format("quantities in {}", joined(known_units(d)));
+    return d == Dimension::none ? "numbers" : fmt::format("quantities in {}", unit_words(d));
   }
   std::string operator()(const bool*) const { return "true or false"; }
   std::string operator()(const int*) const { return "a whole number"; }
@@ -133,9 +133,7 @@ struct TypeWords {
   std::string operator()(const Formulas&) const { return "a list of 3 " + many() + " or formulas \"= ...\""; }
 
  private:
-  std::string units() const {
-    return d == Dimension::none ? "" : fmt::format(" in {}", joined(known_units(d)));
-  }
+  std::string units() const { return d == Dimension::none ? "" : fmt::format(" in {}", unit_words(d)); }
 };
 
 }  // namespace

@@ -42,12 +42,12 @@ std::string render(const Problem& p) {
   std::string text;
   if (p.place.source) text += fmt::format("{}:{}: ", p.place.source->name, p.place.line_number());
   text += p.severity == Severity::error ? "error: " : "warning: ";
-  if (!p.key.empty()) text += p.key + ": ";
+  if (!p.key.empty()) text += printable(p.key) + ": ";
   text += printable(p.what) + "\n";
   if (p.place.source) text += excerpt(p.place);
-  if (!p.expected.empty()) text += "  expected: " + p.expected + "\n";
-  if (!p.nearest.empty()) text += "  nearest:  " + p.nearest + "\n";
-  if (!p.example.empty()) text += "  example:  " + p.example + "\n";
+  if (!p.expected.empty()) text += "  expected: " + printable(p.expected) + "\n";
+  if (!p.nearest.empty()) text += "  nearest:  " + printable(p.nearest) + "\n";
+  if (!p.example.empty()) text += "  example:  " + printable(p.example) + "\n";
   return text;
 }
 

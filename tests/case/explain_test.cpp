@@ -66,12 +66,12 @@ TEST(Schema, EveryKeyHasHelpAndAnExampleThatIsRead) {
 }
 
 TEST(Schema, ReferencePageIsUpToDate) {
-  EXPECT_EQ(file_text("/docs/reference.md"), reference_page())
+  EXPECT_TRUE(file_text("/docs/reference.md") == reference_page())
       << "run: ejecta explain --markdown > docs/reference.md";
 }
 
 TEST(Schema, JsonSchemaIsUpToDate) {
-  EXPECT_EQ(file_text("/docs/ejecta.schema.json"), json_schema())
+  EXPECT_TRUE(file_text("/docs/ejecta.schema.json") == json_schema())
       << "run: ejecta explain --json-schema > docs/ejecta.schema.json";
   const auto json = nlohmann::json::parse(json_schema());
   EXPECT_EQ(json["properties"]["body"]["items"]["properties"]["shape"]["enum"][0], "sphere");

@@ -1,0 +1,11 @@
+# Tests of the case room that are programs of their own.
+include(${PROJECT_SOURCE_DIR}/cmake/fuzz.cmake)
+file(GLOB case_sources RELATIVE ${PROJECT_SOURCE_DIR}/src CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/src/case/*.cpp)
+ejecta_fuzz(case SOURCES ${case_sources} base/text.cpp base/units.cpp LIBS -lfmt INCLUDES ${EIGEN3_INCLUDE_DIRS})
+
+find_package(Python3 REQUIRED COMPONENTS Interpreter)
+add_test(NAME house.includes COMMAND ${Python3_EXECUTABLE} ${PROJECT_SOURCE_DIR}/tools/check_includes.py)
+set_tests_properties(house.includes PROPERTIES LABELS fast)
+add_test(NAME house.includes_refused
+         COMMAND ${Python3_EXECUTABLE} ${PROJECT_SOURCE_DIR}/tests/case/check_includes_test.py)
+set_tests_properties(house.includes_refused PROPERTIES LABELS fast)

@@ -1,0 +1,86 @@
+#!/usr/bin/python3
+"""Checks that the house is built as ARCHITECTURE.md says.
+
+* A file of a room includes only the rooms that the table of ARCHITECTURE.md allows it.
+* No OpenMP, MPI or GPU word stands outside src/base.
+* Only src/app ends the program or prints.
+* Citations of the form [@key] are in docs/references.bib.
+* Headers start with #pragma once.
+
+Usage: tools/check_includes.py [ROOT]; prints what is wrong and exits 1 if anything is.
+"""
+
+import pathlib
+import re
+import sys
+
+INCLUDE = re.compile(r'^\s*#\s*include\s+"([^"]+)"', re.M)
+TABLE_ROW = re.compile(r"^\|([^|]+)\|([^|]+)\|\s*$", re.M)
+PARALLEL = re.compile(r"#\s*pragma\s+omp|\bomp_\w+\(|\bMPI_\w+|\bcuda\w+\(")
+ENDS_OR_PRINTS = re.compile(r"\b(?:std::)?(?:exit|abort|_Exit|quick_exit)\s*\(|\bstd::c(?:out|err)\b|\bfmt::print\s*\(|\bprintf\s*\(")
+CITATION = re.compile(r"\[@([\w:-]+)\]")
+COMMENT = re.compile(r"//[^\n]*|/\*.*?\*/", re.S)
+STRING = re.compile(r'R"(\w*)\((?:.|\n)*?\)\1"|"(?:\\.|[^"\\\n])*"')
+
+
+def allowed_rooms(root):
+    """Room -> rooms it may include, from the table of ARCHITECTURE.md."""
+    text = (root / "ARCHITECTURE.md").read_text()
+    rooms = sorted(p.name for p in (root / "src").iterdir() if p.is_dir())
+    allowed = {}
+    for left, right in TABLE_ROW.findall(text):
+        for room in (name.strip() for name in left.split(",")):
+            if room in rooms:
+                words = set(re.findall(r"[a-z]+", right))
+                allowed[room] = set(rooms) if "all" in words else words & set(rooms)
+    missing = [room for room in rooms if room not in allowed]
+    if missing:
+        raise SystemExit(f"ARCHITECTURE.md: no row for {', '.join(missing)}")
+    return allowed
+
+
+def line_of(text, position):
+    return text.count("\n", 0, position) + 1
+
+
+def complaints(root):
+    allowed = allowed_rooms(root)
+    sources = [p for p in sorted((root / "src").rglob("*")) if p.suffix in (".cpp", ".hpp")]
+    for path in sources:
+        room = path.relative_to(root / "src").parts[0]
+        text = path.read_text()
+        name = path.relative_to(root)
+        for match in INCLUDE.finditer(text):
+            other = match.group(1).split("/")[0]
+            if other == room or not (root / "src" / other).is_dir():
+                continue
+            if other not in allowed[room]:
+                yield f"{name}:{line_of(text, match.start())}: {room} must not include {other} ({match.group(1)})"
+        if path.suffix == ".hpp" and not text.startswith("#pragma once"):
+            yield f"{name}:1: a header starts with #pragma once"
+        code = STRING.sub('""', COMMENT.sub("", text))
+        if room != "base" and (match := PARALLEL.search(code)):
+            yield f"{name}: {match.group(0)!r}: parallel loops only through base/parallel.hpp"
+        if room != "app" and (match := ENDS_OR_PRINTS.search(code)):
+            yield f"{name}: {match.group(0)!r}: only app/ ends the program or prints"
+
+    bibliography = root / "docs" / "references.bib"
+    known = set(re.findall(r"@\w+\{([^,\s]+),", bibliography.read_text())) if bibliography.exists() else set()
+    documents = [p for p in sorted((root / "docs").rglob("*.md"))] if (root / "docs").is_dir() else []
+    for path in sources + documents:
+        text = path.read_text()
+        for match in CITATION.finditer(text):
+            if match.group(1) not in known:
+                yield f"{path.relative_to(root)}:{line_of(text, match.start())}: no entry {match.group(1)} in docs/references.bib"
+
+
+def main():
+    root = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else pathlib.Path(__file__).resolve().parent.parent)
+    found = list(complaints(root))
+    for line in found:
+        print(line)
+    return 1 if found else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
