@@ -159,7 +159,7 @@ export class SceneView {
     const from = { jet: [-0.75, -1.5, 0.65], flight: [-0.45, -1.2, 0.5], side: [0, -1, 0.001], above: [0, -0.02, 1] }[view];
     // Far enough that the box fits in width and height.
     const half = Math.tan((this.camera.fov * Math.PI) / 360);
-    const reach = 0.55 * Math.max(size.x / (half * this.camera.aspect), Math.hypot(size.y, size.z) / half) + 0.5 * size.y;
+    const reach = 0.62 * Math.max(size.x / (half * this.camera.aspect), Math.hypot(size.y, size.z) / half) + 0.5 * size.y;
     this.placed = true;
     this.camera.position.copy(centre).addScaledVector(new Vector3(...(from as Vec3)).normalize(), reach);
     this.controls.target.copy(centre);

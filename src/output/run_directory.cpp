@@ -22,6 +22,14 @@ constexpr std::array kContents{"case.toml",    "manifest.json", "result.json", "
                                path.string(), why.message()));
 }
 
+/// Empty, or the empty folders of a run that was killed before it wrote anything.
+bool holds_no_file(const fs::path& path, std::error_code& failed) {
+  for (auto entry = fs::recursive_directory_iterator(path, failed);
+       !failed && entry != fs::recursive_directory_iterator(); entry.increment(failed))
+    if (!entry->is_directory()) return false;
+  return true;
+}
+
 void check_finite(const nlohmann::ordered_json& value, const std::string& key) {
   if (value.is_number_float() && !std::isfinite(value.get<double>()))
     throw DivergedError(fmt::format("the result {} is {}", key, value.get<double>()));
@@ -39,7 +47,7 @@ RunDirectory RunDirectory::create(const fs::path& path, bool force) {
     if (!fs::is_directory(path))
       throw InputError(fmt::format("{} is a file; a run needs a directory", path.string()));
     const bool is_run = fs::exists(path / "manifest.json");
-    const bool is_empty = fs::is_empty(path, failed);
+    const bool is_empty = holds_no_file(path, failed);
     if (failed) refuse(path, failed);
     if (is_run && !force)
       throw InputError(

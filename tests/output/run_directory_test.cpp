@@ -48,6 +48,12 @@ TEST(RunDirectory, ForceDoesNotTouchADirectoryThatIsNotARun) {
   EXPECT_EQ(read_file(dir / "result.json"), "somebody else's");
 }
 
+TEST(RunDirectory, ARunKilledAtItsStartIsNotInTheWay) {
+  const ScratchDirectory dir;
+  RunDirectory::create(dir / "a.run", false);
+  EXPECT_NO_THROW(RunDirectory::create(dir / "a.run", false));
+}
+
 TEST(RunDirectory, FileInTheWayOrImpossiblePlaceIsNamed) {
   const ScratchDirectory dir;
   write_file(dir / "file", "");
