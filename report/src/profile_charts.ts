@@ -1,5 +1,5 @@
 import { chart, axisLabel, type Series } from "./charts";
-import { viridis } from "./colour";
+import { bodyColour, viridis } from "./colour";
 import { columnOf, type Run, type Table } from "./data";
 import { fixed, words } from "./format";
 
@@ -31,9 +31,34 @@ function ofTime(colour: number, count: number): (dark: boolean) => string {
   };
 }
 
+/** Units of quantities as the probes' histories give them: result.json names quantities without. */
+function unitIn(run: Run, quantity: string): string {
+  for (const [name, table] of run.history)
+    if (name.startsWith("probe-")) {
+      const column = table.columns.find((c) => c.name === quantity);
+      if (column) return column.unit;
+    }
+  return "1";
+}
+
+/** Lines of result.json: profiles at the end of the run. */
+function finalProfiles(runs: Run[]): HTMLElement[] {
+  return runs.flatMap((run) => {
+    const lines = (run.result?.["lines"] ?? {}) as { [line: string]: { [quantity: string]: number[] } };
+    return Object.entries(lines).flatMap(([name, line]) => {
+      const x = (line["position_m"] ?? []).map((v) => v * 1e3);
+      return Object.entries(line).filter(([quantity]) => quantity !== "position_m").map(([quantity, values]) => chart({
+        title: `Line ${name} at the end: ${words(quantity).toLowerCase()}${runs.length > 1 ? `, ${run.name}` : ""}`,
+        xLabel: "position [mm]", yLabel: axisLabel(quantity.replace(/_/g, " "), unitIn(run, quantity)), x,
+        series: [{ label: words(quantity), values, colour: (dark) => bodyColour(0, dark) }],
+      }));
+    });
+  });
+}
+
 /** Jet profiles: every quantity of each recorded line against the position along it, at a few times. */
 export function profileCharts(runs: Run[]): HTMLElement[] {
-  const charts: HTMLElement[] = [];
+  const charts: HTMLElement[] = finalProfiles(runs);
   for (const run of runs)
     for (const [name, table] of run.history) {
       if (!name.startsWith("line-")) continue;

@@ -1,6 +1,6 @@
 import { bodiesOf, type Json, type JsonObject, type Run } from "./data";
 import { h } from "./dom";
-import { duration, fixed, short, thousands, words } from "./format";
+import { duration, fixed, short, labelOf, thousands, words } from "./format";
 
 const isNumber = (v: Json | undefined): v is number => typeof v === "number";
 
@@ -36,6 +36,7 @@ export function bodyCards(runs: Run[]): HTMLElement | null {
   runs.forEach((run, r) => bodiesOf(run).forEach((body, b) => {
     const outcome = body["outcome"];
     const ejected = outcome === "ejected";
+    const sign = ejected ? "\u2197 " : outcome === "not ejected" ? "\u2192 " : "";
     const list = h("dl", {});
     for (const f of factsOfBody(body, `/bodies/${b}`))
       list.append(h("div", {},
@@ -46,7 +47,7 @@ export function bodyCards(runs: Run[]): HTMLElement | null {
         h("h3", {}, h("span", { class: r > 0 ? "swatch dashed" : "swatch", "data-body": b }), String(body["name"] ?? `body ${b}`),
           runs.length > 1 ? h("span", { class: "of-run" }, ` ${run.name}`) : null),
         typeof outcome === "string"
-          ? h("p", { class: ejected ? "outcome ejected" : "outcome kept" }, h("span", { "aria-hidden": "true" }, ejected ? "\u2197 " : "\u2192 "), outcome)
+          ? h("p", { class: ejected ? "outcome ejected" : "outcome kept" }, h("span", { "aria-hidden": "true" }, sign), outcome)
           : null),
       list));
   }));
@@ -77,7 +78,7 @@ export function costTable(runs: Run[]): HTMLElement {
     .filter(([key, v]) => !OWN_PLACE.has(key) && !known.has(key) && (isNumber(v) || typeof v === "string")).map(([key]) => key)))];
   const rows = [
     ...figures,
-    ...others.map((key): [string, string, (v: number) => string] => [key, words(key), (v) => (isNumber(v) ? short(v, 4) : String(v))]),
+    ...others.map((key): [string, string, (v: number) => string] => [key, labelOf(key), (v) => (isNumber(v) ? short(v, 4) : String(v))]),
   ].filter(([key]) => runs.some((run) => run.result?.[key] !== undefined))
     .map(([key, label, text]) => [label, ...runs.map((run, r) => {
       const value = run.result?.[key];
@@ -90,7 +91,7 @@ export function costTable(runs: Run[]): HTMLElement {
 export function ledgerTable(runs: Run[]): HTMLElement | null {
   const keys = [...new Set(runs.flatMap((run) => Object.keys((run.result?.["ledger"] ?? {}) as JsonObject)))];
   if (keys.length === 0) return null;
-  const rows = keys.map((key) => [words(key.replace(/_relative_residual$/, ", relative residual")), ...runs.map((run, r) => {
+  const rows = keys.map((key) => [labelOf(key.replace(/_relative_residual$/, ", relative residual")), ...runs.map((run, r) => {
     const value = ((run.result?.["ledger"] ?? {}) as JsonObject)[key];
     return h("span", { "data-run": r, "data-pointer": `/ledger/${key}` }, isNumber(value) ? short(value, 2) : "\u2013");
   })]);
@@ -135,8 +136,11 @@ export function assumptionList(run: Run): HTMLElement | null {
     a["key"] ? h("p", { class: "key-name" }, "Change it with ", h("code", {}, String(a["key"]))) : null)));
 }
 
+/** Values by JSON pointer; a list of plain values is one entry. */
 function leaves(value: Json, path: string): [path: string, value: Json][] {
   if (value === null || typeof value !== "object") return [[path, value]];
+  if (Array.isArray(value) && value.every((v) => v === null || typeof v !== "object"))
+    return [[path, value.length <= 6 ? value.join(", ") : `${value.length} values`]];
   return Object.entries(value).flatMap(([key, child]) => leaves(child as Json, `${path}/${key}`));
 }
 

@@ -14,6 +14,7 @@ bool has_number(const ordered_json& j, const char* key) { return j.contains(key)
 /// "cube is ejected: its centre passes 12.3 mm above the plate's edge, with 0.25 m/s of vertical velocity to
 /// spare"
 std::string of_body(const ordered_json& body) {
+  if (body["outcome"] == "undecided") return body.value("name", "the body") + " did not reach the plate";
   std::string text =
       fmt::format("{} is {}", body.value("name", "the body"), body["outcome"].get<std::string>());
   if (has_number(body, "clearance_at_splitter_m")) {

@@ -218,6 +218,12 @@ void write_sample(const std::filesystem::path& directory, double push, int cells
                  {"threads", 2},
                  {"cell_steps_per_s", 4.1e7},
                  {"max_courant", 1.31}});
+  nlohmann::ordered_json& line_at_end = result["lines"]["across"];
+  for (double r = -0.03; r <= 0.0301; r += 1e-3) {
+    line_at_end["position_m"].push_back(r + 0.03);
+    line_at_end["speed"].push_back(jet_speed(std::abs(r), kStandOff, 0.01));
+  }
+  result["air_kinetic_energy_J"] = 1.7e-4;
   result["ledger"] = {{"mass_relative_residual", 3.1e-8},
                       {"momentum_relative_residual", 2.2e-6},
                       {"energy_relative_residual", 5.0e-5}};

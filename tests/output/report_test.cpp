@@ -129,6 +129,8 @@ TEST(Verdict, OneSentenceForEveryKindOfRun) {
             "a is not ejected: its centre passes 20.0 mm below the plate's edge, 0.25 m/s of vertical "
             "velocity short "
             "of clearing it.");
+  EXPECT_EQ(verdict_sentence(bodies({{{"name", "c"}, {"outcome", "undecided"}}})),
+            "c did not reach the plate.");
   EXPECT_EQ(verdict_sentence(bodies({hit})), "b is ejected, with 0.10 m/s of vertical velocity to spare.");
   EXPECT_EQ(verdict_sentence(bodies({missed, hit})), "1 of 2 bodies is ejected: b.");
   EXPECT_EQ(verdict_sentence(bodies({missed, missed})), "0 of 2 bodies are ejected.");
