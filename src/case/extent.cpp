@@ -88,7 +88,7 @@ double smallest_feature(const BodySpec& b) {
 
 Vec3 place_of_interest(const Case& c, const BodySpec& b) {
   if (!b.on_belt) return b.position;
-  return c.jet.nozzle + Vec3(c.launch.offset_along, c.launch.offset_across, c.launch.stand_off);
+  return c.jet.nozzle + Vec3(0.0, c.launch.offset_across, c.launch.stand_off);
 }
 
 double cells_across(const Case& c, const BodySpec& b) {

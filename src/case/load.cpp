@@ -57,6 +57,14 @@ void throw_if_any(const std::vector<Problem>& problems) {
 void fill_in(Case& c) {
   if (c.fluid.ideal_gas && c.fluid.density == 0.0)
     c.fluid.density = c.environment.pressure / (c.fluid.gas_constant * c.environment.temperature);
+  if (c.materials.empty() && !(c.bodies.empty() && c.walls.empty())) {
+    c.materials.emplace_back();  // the paper's
+    c.materials.back().name = "ore";
+  }
+  for (BodySpec& b : c.bodies)
+    if (b.material.empty()) b.material = c.materials.front().name;
+  for (WallSpec& w : c.walls)
+    if (w.material.empty()) w.material = c.materials.front().name;
   for (std::size_t n = 0; n < c.bodies.size(); ++n)
     if (c.bodies[n].name.empty()) c.bodies[n].name = fmt::format("body-{}", n + 1);
   for (std::size_t n = 0; n < c.walls.size(); ++n)

@@ -245,7 +245,8 @@ void apply_override(Node& root, const std::string& assignment, std::vector<Probl
       node = &node->children.back();
     }
   }
-  if (!node->is_table()) return wrong("this is a list: say which element, e.g. body.0.mass");
+  if (node->is_list()) return wrong("this is a list: say which element, e.g. body.0.mass");
+  if (!node->is_table()) return wrong(fmt::format("\"{}\" is inside a value", key));
   if (Node* old = node->find(key)) *old = parsed.children.front();
   else node->children.push_back(parsed.children.front());
 }

@@ -74,7 +74,7 @@ std::vector<Key> keys(LaunchSpec& s) {
       {"arrives_at", &s.arrives_at, time, not_negative, "When the undisturbed body crosses the jet's axis",
        ""},
       {"offset_along", &s.offset_along, length, anything,
-       "Moves the path along the belt: positive is later than the jet", "paper 3.2"},
+       "Where along x the body is at arrives_at; positive: past the jet", "paper 3.2"},
       {"offset_across", &s.offset_across, length, anything, "Moves the path across the belt", "paper 3.2"}};
 }
 

@@ -86,7 +86,7 @@ TEST_F(OddFile, ManyElementsAreReadInReasonableTime) {
       "[run]\nend_time = \"1 s\"\n[flow]\nsolver = \"none\"\n[[body]]\nshape = \"multisphere\"\nspheres = "
       "[\n";
   for (int n = 0; n < 20000; ++n)
-    text += "[\"" + std::to_string(n) + " mm\", \"0 mm\", \"0 mm\", \"5 mm\"],\n";
+    text.append("[\"").append(std::to_string(n)).append(" mm\", \"0 mm\", \"0 mm\", \"5 mm\"],\n");
   EXPECT_EQ(load_case(file(text + "]\n").string()).bodies.at(0).spheres.size(), 20000u);
 }
 

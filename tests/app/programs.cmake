@@ -1,0 +1,4 @@
+# Tests of the program itself.
+find_package(Python3 REQUIRED COMPONENTS Interpreter)
+add_test(NAME app.cli COMMAND ${Python3_EXECUTABLE} ${CMAKE_CURRENT_LIST_DIR}/cli_test.py $<TARGET_FILE:ejecta>)
+set_tests_properties(app.cli PROPERTIES LABELS fast)

@@ -1,0 +1,108 @@
+#include "case/sense.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "base/error.hpp"
+#include "case/extent.hpp"
+#include "case/load.hpp"
+#include "case/template.hpp"
+
+using namespace ejecta;
+using testing::Contains;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+/// What is only unlikely to be meant: warnings. What is refused stands in tests/bad_cases.
+namespace {
+
+std::vector<std::string> warnings(const std::vector<std::string>& overrides,
+                                  const std::string& kind = "ejection") {
+  std::vector<std::string> list;
+  for (const Problem& p : check_sense(parse_case(case_template(kind), kind, overrides))) {
+    EXPECT_EQ(p.severity, Severity::warning) << p.what;
+    list.push_back(p.key + ": " + p.what);
+  }
+  return list;
+}
+
+TEST(Sense, AGoodCaseHasNoWarnings) {
+  for (const Word& kind : template_kinds()) EXPECT_THAT(warnings({}, kind.name), IsEmpty()) << kind.name;
+}
+
+TEST(Sense, APulseTooEarlyOrTooLateMisses) {
+  EXPECT_THAT(warnings({"launch.arrives_at=60 ms"}),
+              Contains(HasSubstr("the pulse misses \"cube\" altogether")));
+  EXPECT_THAT(warnings({"valve.opens_at=50 ms"}), Contains(HasSubstr("the jet blows from 50 ms to 59 ms")));
+  EXPECT_THAT(warnings({"valve.opens_at=50 ms", "valve.more_pulses=[\"2 ms\"]"}), IsEmpty())
+      << "a later pulse hits";
+}
+
+/// offset_along moves the path: at 3 m/s, 300 mm are 100 ms.
+TEST(Sense, TheOffsetAlongTheBeltShiftsTheMeeting) {
+  EXPECT_THAT(warnings({"launch.arrives_at=100 ms", "launch.offset_along=30 mm", "valve.opens_at=88 ms"}),
+              IsEmpty());
+  EXPECT_THAT(warnings({"launch.arrives_at=100 ms", "launch.offset_along=-30 mm", "valve.opens_at=70 ms"}),
+              Contains(HasSubstr("misses")));
+}
+
+TEST(Sense, FewCellsAcrossABody) {
+  EXPECT_THAT(warnings({"body.0.size=[\"10 mm\", \"10 mm\", \"6 mm\"]"}),
+              Contains(HasSubstr("6 cells across")));
+}
+
+TEST(Sense, ABodyThatStartsOutsideOrNeverStarts) {
+  EXPECT_THAT(warnings({"body.0.position=[\"1 m\", \"0 m\", \"0 m\"]"}, "settling"),
+              Contains(HasSubstr("starts outside")));
+  EXPECT_THAT(warnings({"body.0.release_at=2 s"}, "settling"), Contains(HasSubstr("never released")));
+}
+
+TEST(Sense, ALaunchWithoutABody) {
+  EXPECT_THAT(warnings({"body.0.on_belt=false", "body.0.position=[\"0 mm\", \"0 mm\", \"75 mm\"]"}),
+              Contains(HasSubstr("no body comes from the belt")));
+}
+
+TEST(Extent, WidthsOfAGradedBlockAreAGeometricSeries) {
+  double sum = 0.0;
+  for (int i = 0; i < 10; ++i) sum += cell_width(1.0, 10, 4.0, i);
+  EXPECT_NEAR(sum, 1.0, 1e-14);
+  EXPECT_NEAR(cell_width(1.0, 10, 4.0, 9) / cell_width(1.0, 10, 4.0, 0), 4.0, 1e-12);
+  EXPECT_EQ(cell_width(1.0, 10, 1.0, 3), 0.1);
+}
+
+TEST(Extent, WidestCellWhereTheBodyIs) {
+  const AxisSpec axis{{0.0, 1.0, 2.0}, {10, 10}, {1.0, 4.0}};
+  EXPECT_NEAR(widest_cell(axis, 0.2, 0.4), 0.1, 1e-12);
+  EXPECT_NEAR(widest_cell(axis, 5.0, 6.0), cell_width(1.0, 10, 4.0, 9), 1e-12) << "outside: the nearest cell";
+  EXPECT_GT(widest_cell(axis, 0.5, 1.5), 0.1);
+}
+
+std::string refusal(const std::vector<std::string>& overrides) {
+  try {
+    parse_case(case_template("ejection"), "ejection", overrides);
+  } catch (const InputError& e) {
+    return e.what();
+  }
+  return "accepted";
+}
+
+TEST(Overrides, WrongOnesSayWhatIsWrong) {
+  EXPECT_THAT(refusal({"run.end_time"}), HasSubstr("no key=value"));
+  EXPECT_THAT(refusal({"=1"}), HasSubstr("no key=value"));
+  EXPECT_THAT(refusal({"body.7.mass=1 g"}), HasSubstr("no element \"7\""));
+  EXPECT_THAT(refusal({"body.sphere.mass=1 g"}), HasSubstr("no element \"sphere\""));
+  EXPECT_THAT(refusal({"body.mass=1 g"}), HasSubstr("say which element"));
+  EXPECT_THAT(refusal({"run.title.x=1"}), HasSubstr("inside a value"));
+  EXPECT_THAT(refusal({"run.title=\"a\nb"}), HasSubstr("cannot be read"));
+  EXPECT_THAT(refusal({"run.curant=1"}), HasSubstr("nearest:  courant"));
+  EXPECT_THAT(refusal({"valve.supply_pressure=6 bar"}), HasSubstr("does not say gauge or absolute"));
+}
+
+TEST(Overrides, ASectionMayBeNew) {
+  const Case c = parse_case(case_template("ejection"), "ejection",
+                            {"checkpoint.every_steps=100", "stream.average_from=1 ms"});
+  EXPECT_EQ(c.checkpoint.every_steps, 100);
+  EXPECT_TRUE(c.stream.enabled);
+}
+
+}  // namespace
