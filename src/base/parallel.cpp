@@ -1,6 +1,7 @@
 #include "base/parallel.hpp"
 
 #include <omp.h>
+#include <xmmintrin.h>
 
 #include <array>
 #include <cstdlib>
@@ -8,6 +9,17 @@
 #include <new>
 
 namespace ejecta {
+namespace {
+
+/// Numbers too small for full precision become zero, in every program from its first line (threads inherit
+/// it): ahead of a wave fields fade through them, and the processor is ten times slower there.
+[[maybe_unused]] const bool denormals_flushed = [] {
+  constexpr unsigned flush_to_zero = 0x8000, denormals_are_zero = 0x0040;
+  _mm_setcsr(_mm_getcsr() | flush_to_zero | denormals_are_zero);
+  return true;
+}();
+
+}  // namespace
 
 int thread_count() { return omp_get_max_threads(); }
 

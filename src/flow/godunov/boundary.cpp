@@ -62,6 +62,7 @@ int Boundaries::set_face(int face, const Condition& condition) {
   const auto handle = static_cast<std::uint8_t>(conditions_.size());
   conditions_.push_back(condition);
   Face& f = face_[static_cast<std::size_t>(face)];
+  f.base = handle;
   std::fill(f.handle.begin(), f.handle.end(), handle);
   std::fill(f.remembered.begin(), f.remembered.end(),
             Real(condition.state.pressure - double(gas_.reference_pressure)));
@@ -169,12 +170,38 @@ void Boundaries::fill_periodic(Block& w, int axis) const {
   });
 }
 
+void Boundaries::extend(Field& field) const {
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!grid_.active(axis)) continue;
+    const Across t = across(axis);
+    const FieldView v = field.view();
+    const std::array<std::ptrdiff_t, 3> stride{1, v.sy, v.sz};
+    const std::ptrdiff_t s = stride[static_cast<std::size_t>(axis)];
+    const std::ptrdiff_t last = (grid_.n(axis) - 1) * s;
+    const bool periodic = is_periodic(axis);
+    for_each_face_cell(2 * axis, false, [&](int a, int b, std::size_t) {
+      Real* row =
+          v.origin + a * stride[static_cast<std::size_t>(t.a)] + b * stride[static_cast<std::size_t>(t.b)];
+      row[-s] = periodic ? row[last] : row[0];
+      row[last + s] = periodic ? row[0] : row[last];
+    });
+  }
+}
+
+bool Boundaries::is_wall(int face) const {
+  const BoundaryType type = conditions_[face_[static_cast<std::size_t>(face)].base].type;
+  return type == BoundaryType::wall || type == BoundaryType::moving_wall;
+}
+
+bool Boundaries::is_periodic(int axis) const {
+  return conditions_[face_[static_cast<std::size_t>(2 * axis)].base].type == BoundaryType::periodic &&
+         grid_.n(axis) >= kGhosts;
+}
+
 void Boundaries::fill(Block& w) const {
   for (int axis = 0; axis < 3; ++axis) {
     if (axis == 1 && !grid_.active(1)) continue;  // a flow in the x-z plane reads nothing along y
-    const Face& low = face_[static_cast<std::size_t>(2 * axis)];
-    const bool periodic = conditions_[low.handle[0]].type == BoundaryType::periodic;
-    if (periodic && grid_.n(axis) >= kGhosts) {
+    if (is_periodic(axis)) {
       fill_periodic(w, axis);
     } else {
       fill_face(w, 2 * axis);

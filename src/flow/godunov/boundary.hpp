@@ -64,15 +64,20 @@ class Boundaries {
   /// 1992).
   void listen(const Block& w, double dt);
   void fill(Block& w) const;
+  /// First ghost layer of a derived field: that of the cell inside (periodic: of the far side).
+  void extend(Field& field) const;
+  bool is_wall(int face) const;  ///< apart from its patches
 
  private:
   struct Face {
+    std::uint8_t base = 0;             ///< handle of the face itself
     std::vector<std::uint8_t> handle;  ///< per cell of the face
     std::vector<Real> remembered;      ///< pressure outside transmissive cells
   };
   template <class Visit>
   void for_each_face_cell(int face, bool ghosts, const Visit& visit) const;
   Primitive load(const Block& w, int face, std::ptrdiff_t n) const;
+  bool is_periodic(int axis) const;
   void fill_face(Block& w, int face) const;
   void fill_periodic(Block& w, int axis) const;
   const Grid& grid_;

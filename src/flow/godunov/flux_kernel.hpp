@@ -14,12 +14,14 @@ struct Physics {
   static constexpr bool across = Across;        ///< velocity and neighbours along y
 };
 
-/// Constants of diffusion. Diffusivity of a turbulent quantity: mu + mu_t * diffusion_k (or _e).
+/// Constants of diffusion. Diffusivity of a turbulent quantity: mu + sigma mu_t, sigma = outer + F1 (inner -
+/// outer) with the blending function of k-omega SST; for k-epsilon both are equal.
 struct Diffusion {
-  Real viscosity = 0;       ///< Pa s
-  Real conductivity = 0;    ///< cp/Pr, times mu: W/m/K
-  Real conductivity_t = 0;  ///< cp/Pr_t, times mu_t
-  Real diffusion_k = 1, diffusion_e = 1;
+  Real viscosity = 0;                         ///< Pa s
+  Real conductivity = 0;                      ///< cp/Pr, times mu: W/m/K
+  Real conductivity_t = 0;                    ///< cp/Pr_t, times mu_t
+  Real sigma_k = 1, sigma_e = 1;              ///< outer
+  Real inner_sigma_k = 0, inner_sigma_e = 0;  ///< inner - outer
 };
 
 /// Flux through the lower face along axis D of cell (i, j, k): MUSCL on the primitive variables, HLLC blended
@@ -29,6 +31,7 @@ struct FluxKernel {
   BlockView<const Real> w;
   BlockView<Real> flux;
   const Real* eddy_viscosity;  ///< same strides as w
+  const Real* f1;
   GasConstants gas;
   Diffusion diffusion;
   std::array<AxisLengths, 3> axis;
@@ -107,13 +110,18 @@ struct FluxKernel {
       const Sides tk = reconstruct(kK, o, s, m), te = reconstruct(kE, o, s, m);
       const bool left = f.mass >= 0;
       const Real mut = Real(0.5) * (eddy_viscosity[o] + eddy_viscosity[o - s]);
+      const Real blending = Real(0.5) * (f1[o] + f1[o - s]);
       const Real inv = axis[n_axis].metrics.inv_distance[m];
       const Real* vk = w.origin[kK] + o;
       const Real* ve = w.origin[kE] + o;
-      flux.at(kK, o) = f.mass * (left ? tk.left : tk.right) -
-                       (diffusion.viscosity + mut * diffusion.diffusion_k) * inv * (vk[0] - vk[-s]);
-      flux.at(kE, o) = f.mass * (left ? te.left : te.right) -
-                       (diffusion.viscosity + mut * diffusion.diffusion_e) * inv * (ve[0] - ve[-s]);
+      flux.at(kK, o) =
+          f.mass * (left ? tk.left : tk.right) -
+          (diffusion.viscosity + mut * (diffusion.sigma_k + blending * diffusion.inner_sigma_k)) * inv *
+              (vk[0] - vk[-s]);
+      flux.at(kE, o) =
+          f.mass * (left ? te.left : te.right) -
+          (diffusion.viscosity + mut * (diffusion.sigma_e + blending * diffusion.inner_sigma_e)) * inv *
+              (ve[0] - ve[-s]);
     }
   }
 

@@ -47,29 +47,73 @@ Primitive inlet_velocity(const GasConstants& gas, const Primitive& inside, const
   return g;
 }
 
+constexpr int kMostIterations = 40;
+constexpr double kMachTolerance = 1e-7;
+
+/// Isentropic flow out of a reservoir.
+struct NozzleSide {
+  double gamma, gas_constant, total_pressure, total_temperature;
+  double temperature(double mach) const {
+    return total_temperature / (1.0 + 0.5 * (gamma - 1.0) * mach * mach);
+  }
+  double pressure(double mach) const {
+    return total_pressure * std::pow(temperature(mach) / total_temperature, gamma / (gamma - 1.0));
+  }
+  double velocity(double mach) const { return mach * std::sqrt(gamma * gas_constant * temperature(mach)); }
+};
+
+/// Gas inside met by a wave of its acoustic family: the velocity it takes on behind the wave when its
+/// pressure becomes p; a shock when p is higher, else a rarefaction (Toro, Riemann Solvers, section 4.2).
+struct WaveInside {
+  double gamma, density, pressure, start;
+  double velocity(double p) const {
+    const double p0 = pressure;
+    if (p > p0) {
+      const double a = 2.0 / ((gamma + 1.0) * density), b = (gamma - 1.0) / (gamma + 1.0) * p0;
+      return start + (p - p0) * std::sqrt(a / (p + b));
+    }
+    const double c = std::sqrt(gamma * p0 / density);
+    return start + 2.0 * c / (gamma - 1.0) * (std::pow(p / p0, 0.5 * (gamma - 1.0) / gamma) - 1.0);
+  }
+};
+
 }  // namespace
 
 Primitive inlet_total_pressure(const GasConstants& gas, double total_pressure, double total_temperature,
                                const Primitive& inside) {
-  const double g = double(gas.gamma), b = 2.0 / (g - 1.0), reference = double(gas.reference_pressure);
-  const double total_sound = g * double(gas.gas_constant) * total_temperature;  // squared
-  const double invariant =
-      double(inside.un) - b * std::sqrt(double(gas.sound_speed_squared(inside.rho, inside.p)));
-  // c^2 + (u^2)(g-1)/2 = c0^2 with u = invariant + b c
-  const double discriminant = invariant * invariant - (1.0 + b) * (invariant * invariant / b - total_sound);
-  double c = discriminant > 0.0 ? (std::sqrt(discriminant) - invariant) / (1.0 + b) : 0.0;
-  double u = invariant + b * c;
-  if (u > c) u = c = std::sqrt(total_sound * 2.0 / (g + 1.0));
+  const NozzleSide nozzle{double(gas.gamma), double(gas.gas_constant), total_pressure, total_temperature};
+  const WaveInside wave{double(gas.gamma), double(inside.rho),
+                        double(inside.p) + double(gas.reference_pressure), double(inside.un)};
+  // The gas inside has to yield less speed than the nozzle at the same pressure: increasing in the Mach
+  // number.
+  const auto surplus = [&](double mach) {
+    return nozzle.velocity(mach) - wave.velocity(nozzle.pressure(mach));
+  };
   Primitive w = inside;
-  if (total_pressure <= double(inside.p) + reference || u <= 0.0) {
+  if (surplus(0.0) >= 0.0) {
     w.un = 0;
     return w;
   }
-  const double ratio = c * c / total_sound;
-  const double p = total_pressure * std::pow(ratio, g / (g - 1.0));
-  w.rho = Real(p / (double(gas.gas_constant) * total_temperature * ratio));
-  w.un = Real(u);
-  w.p = Real(p - reference);
+  double low = 0.0, high = 1.0, at_low = surplus(low), at_high = surplus(high);
+  if (at_high <= 0.0) low = 1.0;
+  for (int n = 0; n < kMostIterations && low < 1.0 && high - low > kMachTolerance; ++n) {
+    // Illinois variant of regula falsi
+    const double mach = (low * at_high - high * at_low) / (at_high - at_low), value = surplus(mach);
+    if (value > 0.0) {
+      high = mach;
+      at_high = value;
+      at_low *= 0.5;
+    } else {
+      low = mach;
+      at_low = value;
+      at_high *= 0.5;
+    }
+    if (std::abs(value) < kMachTolerance * nozzle.velocity(1.0)) low = high = mach;
+  }
+  const double p = nozzle.pressure(low);
+  w.rho = Real(p / (nozzle.gas_constant * nozzle.temperature(low)));
+  w.un = Real(nozzle.velocity(low));
+  w.p = Real(p - double(gas.reference_pressure));
   return w;
 }
 

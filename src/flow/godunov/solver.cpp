@@ -54,11 +54,13 @@ Solver::Solver(const Grid& grid, const Options& options)
       fx_(make_block(grid)),
       fy_(make_block(grid)),
       fz_(make_block(grid)),
-      eddy_viscosity_(grid.make_field()) {
+      eddy_viscosity_(grid.make_field()),
+      f1_(grid.make_field()) {
   const double cp = options.gas.specific_heat_pressure();
   diffusion_.viscosity = Real(options.viscosity);
   diffusion_.conductivity = Real(options.viscosity * cp / options.prandtl);
   diffusion_.conductivity_t = Real(cp / options.prandtl_turbulent);
+  set_turbulence_constants();
 }
 
 void Solver::set(int i, int j, int k, const GasState& s) {
@@ -101,19 +103,19 @@ template <class P>
 void Solver::fluxes() {
   const std::array<AxisLengths, 3> axis{geometry_.axis(0), geometry_.axis(1), geometry_.axis(2)};
   const auto w = view_block<const Real>(w_);
-  const Real* mut = eddy_viscosity_.view().origin;
+  const Real *mut = eddy_viscosity_.view().origin, *f1 = f1_.view().origin;
   Range3 r = grid_.range();
   if (grid_.active(0)) {
     const Range3 faces{r.i0, r.i1 + 1, r.j0, r.j1, r.k0, r.k1};
-    for_each_cell(faces, FluxKernel<0, P>{w, view_block<Real>(fx_), mut, gas_, diffusion_, axis});
+    for_each_cell(faces, FluxKernel<0, P>{w, view_block<Real>(fx_), mut, f1, gas_, diffusion_, axis});
   }
   if constexpr (P::across) {
     const Range3 faces{r.i0, r.i1, r.j0, r.j1 + 1, r.k0, r.k1};
-    for_each_cell(faces, FluxKernel<1, P>{w, view_block<Real>(fy_), mut, gas_, diffusion_, axis});
+    for_each_cell(faces, FluxKernel<1, P>{w, view_block<Real>(fy_), mut, f1, gas_, diffusion_, axis});
   }
   if (grid_.active(2)) {
     const Range3 faces{r.i0, r.i1, r.j0, r.j1, r.k0, r.k1 + 1};
-    for_each_cell(faces, FluxKernel<2, P>{w, view_block<Real>(fz_), mut, gas_, diffusion_, axis});
+    for_each_cell(faces, FluxKernel<2, P>{w, view_block<Real>(fz_), mut, f1, gas_, diffusion_, axis});
   }
 }
 
@@ -151,6 +153,10 @@ void Solver::advance(double dt) {
   boundaries_.listen(w_, dt);
   const bool across = grid_.active(1), viscous = options_.viscosity > 0.0;
   const bool turbulent = options_.turbulence != TurbulenceModel::laminar;
+  if (turbulent) {
+    if (options_.turbulence == TurbulenceModel::k_omega_sst) turbulence<true, false>(dt);
+    else options_.round_jet_correction ? turbulence<false, true>(dt) : turbulence<false, false>(dt);
+  }
   if (turbulent) {
     across ? run_stages<Physics<true, true, true>>(dt) : run_stages<Physics<true, true, false>>(dt);
   } else if (viscous) {

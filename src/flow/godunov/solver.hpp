@@ -28,6 +28,7 @@ class Solver {
   const Grid& grid() const { return grid_; }
   const Options& options() const { return options_; }
 
+  /// Initial state of a cell. `e` is epsilon or omega.
   void set(int i, int j, int k, const GasState& state);
   GasState at(int i, int j, int k) const;
 
@@ -41,6 +42,9 @@ class Solver {
   double total(Component c) const;
   /// Primitive variables with ghosts, pressure relative to the reference.
   const Block& primitive() const { return w_; }
+  /// Fluxes per area of the last stage through the lower faces along x (0) or z (2), pressure counted from
+  /// the reference.
+  const Block& flux(int axis) const { return axis == 0 ? fx_ : axis == 1 ? fy_ : fz_; }
   const Field& eddy_viscosity() const { return eddy_viscosity_; }  ///< Pa s
   /// Raw fields of a checkpoint: conserved and primitive components and the boundaries' memory.
   Block& conserved() { return u_; }
@@ -50,6 +54,10 @@ class Solver {
   void run_stages(double dt);
   template <class P>
   void fluxes();
+  template <bool Sst, bool RoundJet>
+  void turbulence(double dt);
+  void set_turbulence_constants();
+  void measure_walls();
   const Grid& grid_;
   Options options_;
   GasConstants gas_;
@@ -57,7 +65,9 @@ class Solver {
   Geometry geometry_;
   Boundaries boundaries_;
   Block u_, start_, w_, next_, fx_, fy_, fz_;
-  Field eddy_viscosity_;
+  Field eddy_viscosity_, f1_;
+  std::array<std::vector<Real>, 3> wall_distance_;
+  bool started_ = false;
 };
 
 }  // namespace ejecta::godunov

@@ -1,0 +1,132 @@
+#include "app/jet_model.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <filesystem>
+#include <numbers>
+
+#include "app/flow_model.hpp"
+#include "app/grid_sampler.hpp"
+#include "base/error.hpp"
+
+namespace ejecta {
+namespace {
+
+constexpr double kFewestAcross = 8.0;  ///< cells across the orifice below which its jet means nothing
+
+/// Dissipation of the turbulence that enters: mixing length 0.07 d of a pipe (Versteeg & Malalasekera,
+/// section 3.7.2), epsilon = C_mu^(3/4) k^(3/2) / l
+double inlet_epsilon(double k, double diameter) {
+  return std::pow(0.09, 0.75) * std::pow(k, 1.5) / (0.07 * diameter);
+}
+
+double temperature_or(double temperature, const Case& c) {
+  return temperature > 0.0 ? temperature : c.environment.temperature;
+}
+
+}  // namespace
+
+JetModel::JetModel(const Case& c)
+    : case_(c),
+      grid_(make_grid(c)),
+      valve_(c.valve, std::filesystem::path(c.path).parent_path().string()),
+      gas_{c.fluid.gamma, c.fluid.gas_constant} {
+  if (c.flow.solver != FlowSolver::compressible)
+    throw InputError("a jet is computed from its nozzle with flow.solver = \"compressible\"");
+  valve_.require_jet(c.environment.pressure);
+  solver_ = godunov::solver_from_case(c, grid_, inlets_);
+  if (inlets_.empty())
+    throw InputError(
+        "the case has no orifice: give [[boundary.z_min.patch]] with type = \"jet\" and its radius");
+  if (cells_across_orifice() < kFewestAcross)
+    throw InputError(
+        fmt::format("the nozzle is not resolved: {:.1f} cells across the orifice of {:.3g} mm, at least "
+                    "{:.0f} are needed; "
+                    "refine grid.x near the axis",
+                    cells_across_orifice(), 1e3 * orifice_diameter(), kFewestAcross));
+  if (valve_.closed_from() > c.run.end_time && valve_.events().front() < c.run.end_time &&
+      c.valve.opens_at + c.valve.delay + c.valve.duration > c.run.end_time && c.run.end_time > 0.0)
+    throw InputError(
+        fmt::format("the pulse ends at {:.4g} ms, after the simulated time run.end_time of {:.4g} ms",
+                    1e3 * (c.valve.opens_at + c.valve.delay + c.valve.duration), 1e3 * c.run.end_time));
+  for (int d = 0; d < 2; ++d)
+    if (!grid_.axisymmetric() && grid_.active(d) && std::abs(grid_.lower()[d] - inlets_[0].centre[d]) < 1e-9)
+      fold_ *= 2.0;
+  for (const double t : valve_.events()) clock_.add_event(t);
+  clock_.add_event(c.run.end_time);
+}
+
+double JetModel::cells_across_orifice() const {
+  const double width =
+      grid_.axis(0).width[static_cast<std::size_t>(grid_.axis(0).cell_at(inlets_[0].centre.x()))];
+  return 2.0 * inlets_[0].radius / width;
+}
+
+NozzleExit JetModel::ideal_exit() const {
+  return nozzle_exit(gas_, valve_.total_pressure(time(), ambient_pressure()),
+                     temperature_or(case_.valve.supply_temperature, case_), ambient_pressure());
+}
+
+void JetModel::drive(double time) {
+  const double p0 = valve_.total_pressure(time, ambient_pressure());
+  const double t0 = temperature_or(case_.valve.supply_temperature, case_);
+  const NozzleExit exit = nozzle_exit(gas_, p0, t0, ambient_pressure());
+  const double fluctuation = case_.jet.turbulence_intensity * exit.velocity;
+  for (const godunov::DrivenInlet& inlet : inlets_) {
+    godunov::Condition& condition = solver_->boundaries().condition(inlet.handle);
+    condition.total_pressure = p0;
+    condition.total_temperature = t0;
+    if (exit.velocity <= 0.0) continue;
+    condition.state.k = 1.5 * fluctuation * fluctuation;
+    condition.state.e = inlet_epsilon(condition.state.k, 2.0 * inlet.radius);
+    if (case_.flow.turbulence == TurbulenceModel::k_omega_sst)
+      condition.state.e = godunov::omega_of(condition.state.k, condition.state.e);
+  }
+}
+
+double JetModel::step() {
+  double dt = std::min(solver_->stable_dt(case_.run.courant), case_.run.time_step_max);
+  if (case_.run.time_step) dt = *case_.run.time_step;
+  dt = clock_.land_on_events(dt);
+  drive(time() + 0.5 * dt);
+  solver_->advance(dt);
+  clock_.tick(dt);
+  return dt;
+}
+
+JetSample JetModel::sample(const Vec3& position) const {
+  const GridSampler at(grid_, position);
+  const godunov::Block& w = solver_->primitive();
+  const auto value = [&](int c) { return at(w[static_cast<std::size_t>(c)].view()); };
+  JetSample s;
+  s.density = value(godunov::kRho);
+  s.velocity = {value(godunov::kU), grid_.axisymmetric() ? 0.0 : value(godunov::kV), value(godunov::kW)};
+  s.pressure = value(godunov::kP) + solver_->options().reference_pressure;
+  s.temperature = s.pressure / (s.density * gas_.gas_constant);
+  const double sound = gas_sound_speed(gas_, s.temperature);
+  s.mach = s.velocity.norm() / sound;
+  s.k = value(godunov::kK);
+  s.epsilon = value(godunov::kE);
+  if (case_.flow.turbulence == TurbulenceModel::k_omega_sst) s.epsilon *= 0.09 * s.k;
+  const double axial = std::max(0.0, s.velocity.z()) / sound;
+  s.total_gauge = s.pressure * gas_total_pressure_ratio(gas_, axial) - ambient_pressure();
+  s.pitot_gauge = s.pressure * gas_pitot_ratio(gas_, axial) - ambient_pressure();
+  return s;
+}
+
+JetFlow JetModel::through(int k) const {
+  const Metrics x = grid_.metrics(0), y = grid_.metrics(1);
+  const godunov::Block& flux = solver_->flux(2);
+  JetFlow sum;
+  for (int j = 0; j < grid_.ny(); ++j)
+    for (int i = 0; i < grid_.nx(); ++i) {
+      const double area = double(x.volume[i]) * double(y.volume[j]);
+      sum.mass += area * double(flux[godunov::kRho](i, j, k));
+      sum.momentum += area * double(flux[godunov::kW](i, j, k));
+    }
+  const double around = grid_.axisymmetric() ? 2.0 * std::numbers::pi : fold_;
+  return {around * sum.mass, around * sum.momentum};
+}
+
+}  // namespace ejecta

@@ -1,0 +1,68 @@
+#include <algorithm>
+#include <cmath>
+
+#include "base/parallel.hpp"
+#include "flow/godunov/solver.hpp"
+#include "flow/godunov/turbulence_kernel.hpp"
+
+namespace ejecta::godunov {
+
+void Solver::set_turbulence_constants() {
+  if (options_.turbulence == TurbulenceModel::k_omega_sst) {
+    using namespace k_omega_sst;
+    diffusion_.sigma_k = kSigmaK2;
+    diffusion_.sigma_e = kSigmaW2;
+    diffusion_.inner_sigma_k = kSigmaK1 - kSigmaK2;
+    diffusion_.inner_sigma_e = kSigmaW1 - kSigmaW2;
+  } else {
+    diffusion_.sigma_k = 1 / k_epsilon::kSigmaK;
+    diffusion_.sigma_e = 1 / k_epsilon::kSigmaEpsilon;
+  }
+}
+
+void Solver::measure_walls() {
+  constexpr Real kNone = Real(1e3);  // m: no wall in sight
+  for (int d = 0; d < 3; ++d) {
+    const Axis& axis = grid_.axis(d);
+    std::vector<Real>& distance = wall_distance_[static_cast<std::size_t>(d)];
+    distance.assign(static_cast<std::size_t>(axis.n), kNone);
+    for (int side = 0; side < 2; ++side) {
+      if (!grid_.active(d) || !boundaries_.is_wall(2 * d + side)) continue;
+      const double wall = side ? axis.face.back() : axis.face.front();
+      for (std::size_t i = 0; i < distance.size(); ++i)
+        distance[i] = std::min(distance[i], Real(std::abs(axis.centre[i] - wall)));
+    }
+  }
+}
+
+template <bool Sst, bool RoundJet>
+void Solver::turbulence(double dt) {
+  if (!started_) measure_walls();
+  started_ = true;
+  boundaries_.fill(w_);
+  const auto run = [&](auto across) {
+    for_each_cell(grid_.range(),
+                  TurbulenceKernel<Sst, RoundJet, across>{
+                      view_block<const Real>(w_),
+                      view_block<Real>(next_),
+                      view_block<Real>(u_),
+                      eddy_viscosity_.view().origin,
+                      f1_.view().origin,
+                      {wall_distance_[0].data(), wall_distance_[1].data(), wall_distance_[2].data()},
+                      gas_,
+                      {geometry_.axis(0), geometry_.axis(1), geometry_.axis(2)},
+                      Real(options_.viscosity),
+                      Real(dt),
+                      options_.compressibility_correction});
+  };
+  grid_.active(1) ? run(std::true_type{}) : run(std::false_type{});
+  for (const int c : {kK, kE}) std::swap(w_[static_cast<std::size_t>(c)], next_[static_cast<std::size_t>(c)]);
+  boundaries_.extend(eddy_viscosity_);
+  if constexpr (Sst) boundaries_.extend(f1_);
+}
+
+template void Solver::turbulence<true, false>(double);
+template void Solver::turbulence<false, true>(double);
+template void Solver::turbulence<false, false>(double);
+
+}  // namespace ejecta::godunov
