@@ -99,25 +99,43 @@ async function inflate(bytes: Uint8Array): Promise<Uint8Array> {
   return new Uint8Array(await new Response(stream).arrayBuffer());
 }
 
-/* eslint-disable @typescript-eslint/no-explicit-any -- the JSON's shape is fixed by docs/files.md */
-async function readFrame(line: any): Promise<Frame> {
+// The shapes below are those of docs/files.md, before decoding.
+
+interface RawHeader extends Omit<Replay, "bodies" | "valveOpen" | "frames"> {
+  bodies: { name: string; vertices: string; triangles: string }[];
+  valve_open: [number, number][];
+}
+
+interface RawFrame {
+  time: number;
+  bodies: number[][];
+  slices: { raster: number; full_scale: number; data: string }[];
+}
+
+interface RawRun extends Omit<Run, "caseText" | "history" | "replay"> {
+  case: string;
+  history: { [name: string]: { columns: Column[]; data: string[] } };
+  replay: [] | [RawHeader, ...RawFrame[]];
+}
+
+async function readFrame(line: RawFrame): Promise<Frame> {
   const slices = new Map<number, SliceFrame>();
   for (const s of line.slices)
     slices.set(s.raster, { fullScale: s.full_scale, pixels: await inflate(bytesOf(s.data)) });
-  const poses = line.bodies.map((b: number[]): Pose => ({
+  const poses = line.bodies.map((b): Pose => ({
     position: b.slice(0, 3) as Vec3,
     orientation: b.slice(3, 7) as Quat,
   }));
   return { time: line.time, poses, slices };
 }
 
-async function readReplay(lines: any[]): Promise<Replay | null> {
-  if (lines.length < 2) return null;
+async function readReplay(lines: RawRun["replay"]): Promise<Replay | null> {
   const [h, ...frames] = lines;
+  if (!h || frames.length === 0) return null;
   return {
     domain: h.domain,
     rasters: h.rasters,
-    bodies: h.bodies.map((b: any) => ({
+    bodies: h.bodies.map((b) => ({
       name: b.name,
       vertices: new Float32Array(bytesOf(b.vertices).buffer),
       triangles: new Uint32Array(bytesOf(b.triangles).buffer),
@@ -130,11 +148,11 @@ async function readReplay(lines: any[]): Promise<Replay | null> {
   };
 }
 
-function readTable(t: any): Table {
-  return { columns: t.columns, values: t.data.map((d: string) => new Float32Array(bytesOf(d).buffer)) };
+function readTable(t: RawRun["history"][string]): Table {
+  return { columns: t.columns, values: t.data.map((d) => new Float32Array(bytesOf(d).buffer)) };
 }
 
-async function readRun(r: any): Promise<Run> {
+async function readRun(r: RawRun): Promise<Run> {
   return {
     name: r.name,
     verdict: r.verdict,
@@ -147,7 +165,7 @@ async function readRun(r: any): Promise<Run> {
 }
 
 export async function readRuns(): Promise<Run[]> {
-  const data = JSON.parse(document.getElementById("ejecta-data")!.textContent!);
+  const data = JSON.parse(document.getElementById("ejecta-data")!.textContent!) as { runs: RawRun[] };
   return Promise.all(data.runs.map(readRun));
 }
 

@@ -80,9 +80,11 @@ export function motionCharts(runs: Run[], player: Player): HTMLElement | null {
   if (names.length === 0) return null;
   if (names.length === 1) return chartsOfBody(names[0]!, runs, player);
   const holder = h("div", {});
+  const made = new Map<string, HTMLElement>();
   const tabs = h("div", { class: "tabs", role: "group", "aria-label": "Body" });
   const show = (name: string): void => {
-    holder.replaceChildren(chartsOfBody(name, runs, player));
+    if (!made.has(name)) made.set(name, chartsOfBody(name, runs, player));
+    holder.replaceChildren(made.get(name)!);
     for (const tab of tabs.children) tab.setAttribute("aria-pressed", String(tab.textContent === name));
   };
   for (const name of names) {

@@ -96,7 +96,7 @@ export function replayView(runs: Run[], player: Player): HTMLElement | null {
     panels.append(panel);
   }
 
-  const view = h("div", { class: "replay" }, panels, controls(shown, player),
+  const view = h("div", { class: "replay", tabindex: 0, role: "group", "aria-label": "Replay" }, panels, controls(shown, player),
     h("p", { class: "hint" }, "Space plays and pauses, arrow keys step. Drag in space to turn, scroll to zoom. A click in a chart below goes to that moment."));
   view.addEventListener("keydown", (event) => {
     const target = event.target as HTMLElement;

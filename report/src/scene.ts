@@ -54,7 +54,7 @@ function pathLine(points: Vector3[], colour: string, dashed: boolean): Line {
 
 /** The replay in space: bodies as their true triangles, the air as coloured planes, the plate, the paths. */
 export class SceneView {
-  readonly canvas = h("canvas", { class: "stage", role: "img", tabindex: 0 });
+  readonly canvas = h("canvas", { class: "stage", role: "img" });
   private readonly scene = new Scene();
   private readonly camera = new PerspectiveCamera(32, 1, 0.001, 20);
   private readonly renderer: WebGLRenderer;

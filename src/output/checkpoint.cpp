@@ -20,6 +20,12 @@ struct CheckpointWriter::Impl {
   CheckpointTime at;
   Hdf5Handle file;
 
+  ~Impl() {  // also when the constructor of the writer throws
+    const Hdf5Silence silence;
+    file.reset();
+    if (!temporary.empty()) ::unlink(temporary.c_str());
+  }
+
   [[noreturn]] void fail(const std::string& what) const {
     if (errno != 0) throw_system_error(what, temporary);
     throw Error(fmt::format("{} {}", what, temporary.string()));
@@ -55,11 +61,7 @@ CheckpointWriter::CheckpointWriter(fs::path path, CheckpointTime at) : impl_(std
   if (!impl_->file) impl_->fail("cannot create");
 }
 
-CheckpointWriter::~CheckpointWriter() {
-  const Hdf5Silence silence;
-  impl_->file.reset();
-  if (!impl_->temporary.empty()) ::unlink(impl_->temporary.c_str());
-}
+CheckpointWriter::~CheckpointWriter() = default;
 
 void CheckpointWriter::put(const std::string& name, std::span<const double> values) {
   impl_->put(name, values);

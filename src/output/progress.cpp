@@ -17,7 +17,8 @@
 namespace ejecta::output {
 namespace {
 
-constexpr double kBarInterval = 0.1, kFileInterval = 1.0;  // s of wall time
+constexpr double kBarInterval = 0.1, kFileInterval = 1.0, kSampleInterval = 1.0;  // s of wall time
+constexpr double kNewestShare = 0.3;  // of the newest sample in the mean of late
 constexpr std::string_view kClearLine = "\r\x1b[K";
 
 double fraction(const ProgressState& s) {
@@ -48,20 +49,24 @@ Progress::Progress(std::ostream& out, ProgressOptions options) : out_(out), opti
 
 double Progress::now() const { return options_.wall_clock ? options_.wall_clock() : steady_seconds(); }
 
-double Progress::rate(const ProgressState& s) const {
-  const double wall = now() - start_;
-  return wall > 0.0 ? static_cast<double>(s.cells) * static_cast<double>(s.step - first_.step) / wall : 0.0;
+void Progress::measure(const ProgressState& s, double wall) {
+  const double span = wall - sample_.wall;
+  if (span < kSampleInterval) return;
+  const double share = steps_per_wall_ > 0.0 ? kNewestShare : 1.0;
+  time_per_wall_ += share * ((s.time - sample_.time) / span - time_per_wall_);
+  steps_per_wall_ += share * (static_cast<double>(s.step - sample_.step) / span - steps_per_wall_);
+  sample_ = {wall, s.time, s.step};
 }
 
 double Progress::eta(const ProgressState& s) const {
-  const double done = s.time - first_.time;  // of this process: a resumed run starts elsewhere
-  return done > 0.0 ? (now() - start_) * std::max(0.0, s.end_time - s.time) / done : INFINITY;
+  return time_per_wall_ > 0.0 ? std::max(0.0, s.end_time - s.time) / time_per_wall_ : INFINITY;
 }
 
 std::string Progress::status(const ProgressState& s) const {
   const double left = eta(s);
   return fmt::format("{:3.0f} %  t {:.3f}/{:.3f} ms  step {}  Co {:.2f}  {:.1f} Mcell/s  {}",
-                     100.0 * fraction(s), 1e3 * s.time, 1e3 * s.end_time, s.step, s.courant, 1e-6 * rate(s),
+                     100.0 * fraction(s), 1e3 * s.time, 1e3 * s.end_time, s.step, s.courant,
+                     1e-6 * steps_per_wall_ * static_cast<double>(s.cells),
                      std::isfinite(left) ? duration_text(left) + " left" : "");
 }
 
@@ -81,9 +86,12 @@ void Progress::draw_bar(const ProgressState& s) {
 }
 
 void Progress::update(const ProgressState& s) {
-  if (!started_) first_ = s;
-  started_ = true;
   const double t = now();
+  if (!started_) {
+    sample_ = {t, s.time, s.step};
+    started_ = true;
+  }
+  measure(s, t);
   if (!options_.file.empty() && t - last_written_ >= kFileInterval) {
     write_file(s, "running");
     last_written_ = t;
@@ -96,14 +104,12 @@ void Progress::update(const ProgressState& s) {
 }
 
 void Progress::finish(const ProgressState& last, const std::string& state) {
-  if (!started_) first_ = last;
-  started_ = true;
   if (!options_.file.empty()) write_file(last, state);
   if (options_.verbosity == Verbosity::quiet) return;
   if (bar_shown_) out_ << kClearLine;
   bar_shown_ = false;
-  out_ << fmt::format("{} at t = {:.3f} ms after {} steps, {}, {:.1f} Mcell-steps/s\n", state,
-                      1e3 * last.time, last.step, duration_text(now() - start_), 1e-6 * rate(last))
+  out_ << fmt::format("{} at t = {:.3f} ms after {} steps, {}\n", state, 1e3 * last.time, last.step,
+                      duration_text(now() - start_))
        << std::flush;
 }
 
@@ -127,7 +133,7 @@ void Progress::write_file(const ProgressState& s, const std::string& state) cons
                               {"time_step_s", s.dt},
                               {"courant", s.courant},
                               {"cells", s.cells},
-                              {"cell_steps_per_s", rate(s)},
+                              {"cell_steps_per_s", steps_per_wall_ * static_cast<double>(s.cells)},
                               {"wall_time_s", now() - start_},
                               {"process", ::getpid()}};
   const double left = eta(s);

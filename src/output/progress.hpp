@@ -54,14 +54,19 @@ class Progress {
   std::string status(const ProgressState& s) const;
   void draw_bar(const ProgressState& s);
   void write_file(const ProgressState& s, const std::string& state) const;
+  void measure(const ProgressState& s, double wall);
   double eta(const ProgressState& s) const;
-  double rate(const ProgressState& s) const;
 
   std::ostream& out_;
   ProgressOptions options_;
   double start_ = 0.0, last_shown_ = -1e30, last_written_ = -1e30;
   bool started_ = false, bar_shown_ = false;
-  ProgressState first_;
+  // Of late: the first steps of a run and a flight without air are no measure of each other.
+  struct Sample {
+    double wall = 0.0, time = 0.0;
+    std::int64_t step = 0;
+  } sample_;
+  double time_per_wall_ = 0.0, steps_per_wall_ = 0.0;
 };
 
 /// The table that ends a run: operator, seconds, share of `wall_time` (s), calls; the rest is one more row.

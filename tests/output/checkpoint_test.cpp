@@ -10,6 +10,7 @@
 #include <random>
 
 #include "base/error.hpp"
+#include "file_size_limit.hpp"
 #include "output/output_file.hpp"
 #include "scratch_directory.hpp"
 
@@ -131,6 +132,24 @@ TEST(Checkpoint, AnUnfinishedOneLeavesNothing) {
     writer.put("a", std::span<const double>(std::vector{1.0}));
   }
   EXPECT_TRUE(fs::is_empty(dir.path()));
+}
+
+TEST(Checkpoint, FullDiskIsAnErrorAndTheOlderOnesStay) {
+  const ScratchDirectory dir;
+  const CheckpointStore store(dir.path());
+  write(store, 1);
+  for (const rlim_t room : {100, 1000, 3000, 10000, 20000}) {
+    testing::internal::CaptureStderr();
+    const std::string message = message_of([&] {
+      const FileSizeLimit limit(room);
+      write(store, 2);
+    });
+    EXPECT_EQ(testing::internal::GetCapturedStderr(), "") << "HDF5 printed its error stack";
+    EXPECT_THAT(message, HasSubstr("step-000000002.h5")) << room;
+    EXPECT_FALSE(fs::exists(dir / "step-000000002.h5"));
+    EXPECT_FALSE(fs::exists(dir / "step-000000002.h5.tmp"));
+    EXPECT_EQ(store.newest().reader->at().step, 1);
+  }
 }
 
 TEST(Checkpoint, UnwritablePlaceIsNamed) {

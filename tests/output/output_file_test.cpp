@@ -2,11 +2,9 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sys/resource.h>
-
-#include <csignal>
 
 #include "base/error.hpp"
+#include "file_size_limit.hpp"
 #include "scratch_directory.hpp"
 
 using namespace ejecta;
@@ -14,21 +12,6 @@ using namespace ejecta::output;
 using testing::HasSubstr;
 
 namespace {
-
-/// A disk that is full after `bytes`, as the system shows it to one process: writes beyond fail.
-class FileSizeLimit {
- public:
-  explicit FileSizeLimit(rlim_t bytes) {
-    std::signal(SIGXFSZ, SIG_IGN);
-    ::getrlimit(RLIMIT_FSIZE, &before_);
-    const rlimit limit{bytes, before_.rlim_max};
-    ::setrlimit(RLIMIT_FSIZE, &limit);
-  }
-  ~FileSizeLimit() { ::setrlimit(RLIMIT_FSIZE, &before_); }
-
- private:
-  rlimit before_{};
-};
 
 std::string message_of(const auto& action) {
   try {

@@ -80,6 +80,17 @@ TEST(Progress, ResumedRunCountsItsOwnSteps) {
   EXPECT_THAT(out.str(), HasSubstr("10.0 Mcell/s  40.0 s left"));
 }
 
+TEST(Progress, TheTimeLeftFollowsTheSpeedOfLate) {
+  double wall = 0.0;
+  std::ostringstream out;
+  ProgressOptions options;
+  options.wall_clock = [&] { return wall; };
+  Progress progress(out, options);
+  for (; wall < 50.0; wall += 1.0) progress.update({1e-3 * wall, 1.0, 0, 1e-3, 1.0, 0});  // 1 ms a second
+  for (; wall <= 90.0; wall += 1.0) progress.update({0.05 + 1e-2 * (wall - 50.0), 1.0, 0, 1e-3, 1.0, 0});
+  EXPECT_THAT(out.str(), HasSubstr("55.0 s left"));  // of 0.55 s left at 10 ms a second
+}
+
 TEST(OperatorTable, AccountsForAllTheTime) {
   const std::vector<OperatorTime> operators{{"flow.predict", "", 3.0, 10}, {"flow.project", "", 5.0, 20}};
   const std::string table = operator_table(operators, 10.0);
