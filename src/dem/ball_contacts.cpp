@@ -17,7 +17,7 @@ using LooseLanes = double __attribute__((vector_size(kLanes * sizeof(double)), a
 using Index = std::int64_t __attribute__((vector_size(kLanes * sizeof(std::int64_t))));
 
 /// Eight rows of eight numbers to eight columns.
-void transpose(Lanes r[8]) {
+EJECTA_INLINE void transpose(Lanes r[8]) {
   constexpr Index low1{0, 8, 2, 10, 4, 12, 6, 14}, high1{1, 9, 3, 11, 5, 13, 7, 15};
   constexpr Index low2{0, 1, 8, 9, 4, 5, 12, 13}, high2{2, 3, 10, 11, 6, 7, 14, 15};
   constexpr Index low4{0, 1, 2, 3, 8, 9, 10, 11}, high4{4, 5, 6, 7, 12, 13, 14, 15};
@@ -42,7 +42,7 @@ struct BallLanes {
   Lanes radius, inverse_mass, material;
 };
 
-BallLanes load_balls(const BallRow* rows, const int* index) {
+EJECTA_INLINE BallLanes load_balls(const BallRow* rows, const int* index) {
   Lanes first[8], second[8];
   for (int n = 0; n < 8; ++n) {
     const double* row = &rows[index[n]].x;
@@ -56,7 +56,7 @@ BallLanes load_balls(const BallRow* rows, const int* index) {
           {second[0], second[1], second[2]},
           first[3],
           first[7],
-          second[3]};
+          second[4]};
 }
 
 PairConstants<Lanes> load_constants(const Materials& materials, const BallLanes& a, const BallLanes& b) {
@@ -74,7 +74,7 @@ PairConstants<Lanes> load_constants(const Materials& materials, const BallLanes&
   return p;
 }
 
-Triple<Lanes> select(const Index& mask, const Triple<Lanes>& v) {
+EJECTA_INLINE Triple<Lanes> select(const Index& mask, const Triple<Lanes>& v) {
   const Lanes zero{};
   return {mask ? v.x : zero, mask ? v.y : zero, mask ? v.z : zero};
 }
@@ -83,17 +83,17 @@ LooseLanes& lanes_at(std::vector<double>& v, std::size_t n) {
   return *reinterpret_cast<LooseLanes*>(v.data() + n);
 }
 
-Triple<Lanes> load3(std::vector<double>* v, std::size_t n) {
+EJECTA_INLINE Triple<Lanes> load3(std::vector<double>* v, std::size_t n) {
   return {lanes_at(v[0], n), lanes_at(v[1], n), lanes_at(v[2], n)};
 }
 
-void store3(std::vector<double>* v, std::size_t n, const Triple<Lanes>& t) {
+EJECTA_INLINE void store3(std::vector<double>* v, std::size_t n, const Triple<Lanes>& t) {
   lanes_at(v[0], n) = t.x;
   lanes_at(v[1], n) = t.y;
   lanes_at(v[2], n) = t.z;
 }
 
-bool none(const Index& mask) {
+EJECTA_INLINE bool none(const Index& mask) {
   std::int64_t any = 0;
   for (int n = 0; n < kLanes; ++n) any |= mask[n];
   return any == 0;
@@ -167,27 +167,6 @@ void BallContacts::compute(const Parts& parts, const Materials& materials, doubl
   else
     rolling_ ? compute_all<HertzMindlin, true>(parts, materials, dt)
              : compute_all<HertzMindlin, false>(parts, materials, dt);
-}
-
-void BallContacts::gather(const Parts& parts, int ball, Vec3& force, Vec3& torque) const {
-  const double radius = parts.row(ball).radius;
-  const auto moment = [&](std::size_t n) { return Vec3(moments_[0][n], moments_[1][n], moments_[2][n]); };
-  Vec3 f(0, 0, 0), t(0, 0, 0);
-  for (int n = first_own_[at(ball)]; n < first_own_[at(ball) + 1]; ++n) {
-    const PairRow& r = rows_[at(n)];
-    f += Vec3(r.fx, r.fy, r.fz);
-    t -= (radius - r.half_overlap) * Vec3(r.gx, r.gy, r.gz);
-    if (rolling_) t += moment(at(n));
-  }
-  for (int k = first_other_[at(ball)]; k < first_other_[at(ball) + 1]; ++k) {
-    const std::size_t n = at(other_[at(k)]);
-    const PairRow& r = rows_[n];
-    f -= Vec3(r.fx, r.fy, r.fz);
-    t -= (radius - r.half_overlap) * Vec3(r.gx, r.gy, r.gz);
-    if (rolling_) t -= moment(n);
-  }
-  force += f;
-  torque += t;
 }
 
 void BallContacts::index_pairs(int balls) {

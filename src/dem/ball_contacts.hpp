@@ -5,6 +5,7 @@
 
 #include "dem/materials.hpp"
 #include "dem/parts.hpp"
+#include "dem/sphere_state.hpp"
 
 namespace ejecta {
 
@@ -24,7 +25,7 @@ class BallContacts {
   /// Evaluates the law on every pair and moves the histories over dt.
   void compute(const Parts& parts, const Materials& materials, double dt);
   /// Adds the force and the torque about the ball's centre that act on it.
-  void gather(const Parts& parts, int ball, Vec3& force, Vec3& torque) const;
+  void gather(int ball, double radius, Vec4& force, Vec4& torque) const;
 
   double elastic() const;  ///< J
 
@@ -52,5 +53,18 @@ class BallContacts {
   std::vector<int> first_own_, first_other_, other_;  // pairs of a ball as a (a range) and as b (a list)
   bool rolling_ = false;
 };
+
+inline void BallContacts::gather(int ball, double radius, Vec4& force, Vec4& torque) const {
+  const auto add = [&](std::size_t n, double sign) {
+    const Vec4 push = *reinterpret_cast<const LooseVec4*>(&rows_[n].fx);
+    const Vec4 turning = *reinterpret_cast<const LooseVec4*>(&rows_[n].gx);
+    force += sign * push;
+    torque -= (radius - push[3]) * turning;
+    if (rolling_) torque += sign * Vec4{moments_[0][n], moments_[1][n], moments_[2][n], 0.0};
+  };
+  for (int n = first_own_[at(ball)]; n < first_own_[at(ball) + 1]; ++n) add(at(n), 1.0);
+  for (int k = first_other_[at(ball)]; k < first_other_[at(ball) + 1]; ++k) add(at(other_[at(k)]), -1.0);
+  force[3] = torque[3] = 0.0;
+}
 
 }  // namespace ejecta

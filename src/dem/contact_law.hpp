@@ -46,7 +46,7 @@ struct NormalSpring {
 /// Contact Mechanics, eqs 4.23 and 7.43.
 struct HertzMindlin {
   template <class T>
-  static NormalSpring<T> spring(const Contact<T>& c, const PairConstants<T>& p) {
+  EJECTA_INLINE static NormalSpring<T> spring(const Contact<T>& c, const PairConstants<T>& p) {
     const T a = root(c.radius * c.overlap);
     NormalSpring<T> s;
     s.secant = (4.0 / 3.0) * p.youngs * a;
@@ -57,7 +57,7 @@ struct HertzMindlin {
   }
   /// Dashpot alpha sqrt(m k) d^(1/4) of Antypov & Elliott 2011, EPL 94:50004, with k d^(1/2) the secant.
   template <class T>
-  static T dashpot(const NormalSpring<T>& s, const Contact<T>& c, const PairConstants<T>& p) {
+  EJECTA_INLINE static T dashpot(const NormalSpring<T>& s, const Contact<T>& c, const PairConstants<T>& p) {
     return p.damping * root(c.mass * s.secant);
   }
 };
@@ -66,7 +66,7 @@ struct HertzMindlin {
 /// sphere's normal and tangential motion; Schaefer, Dippel & Wolf 1996).
 struct LinearSpring {
   template <class T>
-  static NormalSpring<T> spring(const Contact<T>& c, const PairConstants<T>& p) {
+  EJECTA_INLINE static NormalSpring<T> spring(const Contact<T>& c, const PairConstants<T>& p) {
     NormalSpring<T> s;
     s.secant = p.stiffness;
     s.tangent = p.stiffness;
@@ -75,7 +75,7 @@ struct LinearSpring {
     return s;
   }
   template <class T>
-  static T dashpot(const NormalSpring<T>& s, const Contact<T>& c, const PairConstants<T>& p) {
+  EJECTA_INLINE static T dashpot(const NormalSpring<T>& s, const Contact<T>& c, const PairConstants<T>& p) {
     return p.damping * root(c.mass * s.secant);
   }
 };
@@ -85,8 +85,8 @@ struct LinearSpring {
 /// limit. The tangential dashpot is the normal one times sqrt(tangential / tangent stiffness), as for two
 /// oscillators of equal damping ratio (Tsuji, Tanaka & Ishida 1992, Powder Technol. 71:239).
 template <class Law, class T>
-ContactForce<T> contact_force(const Contact<T>& c, const PairConstants<T>& p, bool allow_tension, double dt,
-                              Triple<T>& slip) {
+EJECTA_INLINE ContactForce<T> contact_force(const Contact<T>& c, const PairConstants<T>& p,
+                                            bool allow_tension, double dt, Triple<T>& slip) {
   const NormalSpring<T> s = Law::spring(c, p);
   const T dashpot = Law::dashpot(s, c, p);
   const T approach = dot(c.velocity, c.normal);  // > 0: parting
@@ -121,8 +121,9 @@ ContactForce<T> contact_force(const Contact<T>& c, const PairConstants<T>& p, bo
 /// 206:269): a spring against relative rolling, k = k_t R^2, cut at mu_r R F_n. `roll`: its angle (rad),
 /// history. `spin`: angular velocity of a relative to b, rad/s. Returns the moment on a, N m.
 template <class T>
-Triple<T> rolling_moment(const Contact<T>& c, const PairConstants<T>& p, const ContactForce<T>& f,
-                         const Triple<T>& spin, double dt, Triple<T>& roll) {
+EJECTA_INLINE Triple<T> rolling_moment(const Contact<T>& c, const PairConstants<T>& p,
+                                       const ContactForce<T>& f, const Triple<T>& spin, double dt,
+                                       Triple<T>& roll) {
   const T stiffness = f.tangential_stiffness * c.radius * c.radius;
   roll = roll - dot(roll, c.normal) * c.normal + (T{} + dt) * (spin - dot(spin, c.normal) * c.normal);
   const T size = stiffness * root(dot(roll, roll));

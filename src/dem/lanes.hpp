@@ -6,6 +6,8 @@
 namespace ejecta {
 
 constexpr int kLanes = 8;
+/// A call with a dozen lanes of arguments would pass them through memory.
+#define EJECTA_INLINE [[gnu::always_inline]] inline
 using Lanes = double __attribute__((vector_size(kLanes * sizeof(double))));
 
 inline double root(double v) { return std::sqrt(v); }

@@ -37,9 +37,10 @@ void NeighbourSearch::sort_into_cells(const std::vector<Item>& items, double edg
   }
   for (std::size_t c = 1; c < first_.size(); ++c) first_[c] += first_[c - 1];
   cursor_.assign(first_.begin(), first_.end());
-  order_.resize(items.size());
+  sorted_.resize(items.size());
   for (std::size_t n = 0; n < items.size(); ++n)
-    order_[static_cast<std::size_t>(cursor_[static_cast<std::size_t>(cell_of_[n])]++)] = static_cast<int>(n);
+    sorted_[static_cast<std::size_t>(cursor_[static_cast<std::size_t>(cell_of_[n])]++)] = {
+        items[n], static_cast<int>(n)};
 }
 
 void NeighbourSearch::neighbours_of(const std::vector<Item>& items, int i, double reach,
@@ -55,12 +56,11 @@ void NeighbourSearch::neighbours_of(const std::vector<Item>& items, int i, doubl
       const int from = first_[row + static_cast<std::size_t>(std::max(cx - 1, 0))];
       const int to = first_[row + static_cast<std::size_t>(std::min(cx + 1, nx - 1)) + 1];
       for (int n = from; n < to; ++n) {
-        const int j = order_[static_cast<std::size_t>(n)];
-        if (j <= i) continue;
-        const Item& other = items[static_cast<std::size_t>(j)];
-        const double limit = item.radius + other.radius + reach;
-        if (other.body != item.body && (other.centre - item.centre).squaredNorm() < limit * limit)
-          out.emplace_back(i, j);
+        const Sorted& other = sorted_[static_cast<std::size_t>(n)];
+        const double limit = item.radius + other.item.radius + reach;
+        if (other.index > i && (other.item.centre - item.centre).squaredNorm() < limit * limit &&
+            other.item.body != item.body)
+          out.emplace_back(i, other.index);
       }
     }
   std::sort(out.begin() + static_cast<std::ptrdiff_t>(start), out.end());

@@ -29,7 +29,12 @@ class NeighbourSearch {
     double edge = 1.0;
     int n[3] = {1, 1, 1};
   } lattice_;
-  std::vector<int> cell_of_, first_, order_, cursor_;
+  struct Sorted {
+    Item item;
+    int index = 0;
+  };
+  std::vector<int> cell_of_, first_, cursor_;
+  std::vector<Sorted> sorted_;                           // by cell, so that a search reads on and on
   std::vector<std::vector<std::pair<int, int>>> found_;  // by block of items
   std::vector<std::pair<int, int>> pairs_;
 };

@@ -18,6 +18,10 @@ constexpr int kBlock = 512;             // bodies one thread moves at a time; su
 constexpr double kSlowest = 0.1;        // m/s, impact speed the step is made for at least
 constexpr int kStepsBetweenLists = 20;  // aimed at when the skin is chosen
 
+Vec4 load_torque(std::size_t n, std::span<const Load> loads) {
+  return loads.empty() ? Vec4{} : vec4(loads[n].torque);
+}
+
 }  // namespace
 
 Particles::Particles(const Vec3& gravity, Materials materials, const ContactSpec& contact)
@@ -41,9 +45,40 @@ void Particles::advance(double dt, std::span<const Load> loads) {
   if (!(dt > 0)) return;
   const int steps = std::max(1, static_cast<int>(std::ceil(dt / stable_dt() * (1 - 1e-12))));
   const double start = time_;
+  pack_spheres();
   for (int n = 0; n < steps; ++n) {
     substep(dt / steps, loads);
     time_ = start + dt * (n + 1) / steps;
+  }
+  unpack_spheres();
+}
+
+void Particles::pack_spheres() {
+  spheres_.resize(bodies_.size());
+  packed_.resize(bodies_.size());
+  for (std::size_t n = 0; n < bodies_.size(); ++n) {
+    const Body& b = bodies_[n];
+    packed_[n] = b.motion == Motion::free && moves(b) && parts_.is_sphere(static_cast<int>(n));
+    if (packed_[n])
+      spheres_[n] = {vec4(b.position), vec4(b.velocity), vec4(momentum_[n]),
+                     vec4(force_[n]),  vec4(torque_[n]), vec4(listed_at_[n]),
+                     Vec4{},           1 / b.mass,       1 / b.inertia[0]};
+  }
+}
+
+void Particles::unpack_spheres() {
+  for (std::size_t n = 0; n < bodies_.size(); ++n) {
+    if (!packed_[n]) continue;
+    const SphereState& s = spheres_[n];
+    Body& b = bodies_[n];
+    b.position = vec3(s.position);
+    b.velocity = vec3(s.velocity);
+    b.angular_velocity = s.inverse_inertia * vec3(s.momentum);
+    turn(b.orientation, vec3(s.turn));
+    momentum_[n] = vec3(s.momentum);
+    force_[n] = vec3(s.force);
+    torque_[n] = vec3(s.torque);
+    listed_at_[n] = vec3(s.listed_at);
   }
 }
 
@@ -67,34 +102,53 @@ void Particles::substep(double dt, std::span<const Load> loads) {
 
 void Particles::drift(double dt, std::span<const Load> loads) {
   const int count = static_cast<int>(bodies_.size());
+  const Vec4 gravity = vec4(gravity_);
   block_moved_.resize(static_cast<std::size_t>(block_count(count, kBlock)));
   for_each_block(count, kBlock, [&](int block, int begin, int end) {
-    double farthest = 0.0;
+    double spheres = 0.0, others = 0.0;  // farthest moves: m2, m
     for (int i = begin; i < end; ++i) {
       const std::size_t n = static_cast<std::size_t>(i);
-      Body& b = bodies_[n];
-      if (moves(b)) {
-        const bool pushed = b.motion == Motion::free;
-        const Vec3 kick = pushed ? Vec3(0.5 * dt * acceleration(n, loads)) : Vec3(0, 0, 0);
-        const Vec3 twist = pushed ? Vec3(0.5 * dt * torque_on(n, loads)) : Vec3(0, 0, 0);
-        b.velocity += kick;
-        momentum_[n] += twist;
-        b.position += dt * b.velocity;
-        rotate_free(b.orientation, momentum_[n], b.inertia, dt);
-        // Damping and friction need velocities at the whole step: extrapolated, to keep the second order.
-        velocity_[n] = b.velocity + kick;
-        spin_[n] = angular_velocity(b.orientation, momentum_[n] + twist, b.inertia);
-        turned_[n] += dt * spin_[n].norm() * parts_.arm(i);
-        const double moved = (b.position - listed_at_[n]).norm() + turned_[n];
-        if (!(moved <= farthest)) farthest = moved;  // keeps NaN
+      if (packed_[n]) {
+        SphereState& s = spheres_[n];
+        const Vec4 push = loads.empty() ? gravity : gravity + s.inverse_mass * vec4(loads[n].force);
+        const double moved = drift_sphere(s, parts_.sphere_row(i), push, load_torque(n, loads), dt);
+        if (!(moved <= spheres)) spheres = moved;  // keeps NaN
       } else {
-        velocity_[n].setZero();
-        spin_[n].setZero();
+        const double moved = drift_body(i, loads, dt);
+        if (!(moved <= others)) others = moved;
       }
-      parts_.update(i, b, velocity_[n], spin_[n]);
     }
-    block_moved_[static_cast<std::size_t>(block)] = farthest;
+    const double moved = std::sqrt(spheres);
+    block_moved_[static_cast<std::size_t>(block)] = moved <= others ? others : moved;
   });
+}
+
+/// Returns how far a part of the body may have moved since the listing, m.
+double Particles::drift_body(int index, std::span<const Load> loads, double dt) {
+  const std::size_t n = static_cast<std::size_t>(index);
+  Body& b = bodies_[n];
+  double moved = 0.0;
+  if (moves(b)) {
+    const bool pushed = b.motion == Motion::free;
+    const Vec3 kick = pushed ? Vec3(0.5 * dt * acceleration(n, loads)) : Vec3(0, 0, 0);
+    const Vec3 twist = pushed ? Vec3(0.5 * dt * torque_on(n, loads)) : Vec3(0, 0, 0);
+    b.velocity += kick;
+    momentum_[n] += twist;
+    b.position += dt * b.velocity;
+    rotate_free(b.orientation, momentum_[n], b.inertia, dt);
+    // Damping and friction need velocities at the whole step: extrapolated, to keep the second order.
+    velocity_[n] = b.velocity + kick;
+    spin_[n] = angular_velocity(b.orientation, momentum_[n] + twist, b.inertia);
+    turned_[n] += dt * spin_[n].norm() * parts_.arm(index);
+    moved = (b.position - listed_at_[n]).norm() + turned_[n];
+  } else {
+    velocity_[n].setZero();
+    spin_[n].setZero();
+  }
+  force_[n].setZero();
+  torque_[n].setZero();
+  parts_.update(index, b, velocity_[n], spin_[n]);
+  return moved;
 }
 
 void Particles::find_contacts(double dt) {
@@ -108,22 +162,31 @@ void Particles::find_contacts(double dt) {
 }
 
 void Particles::throw_diverged() const {
-  for (const Body& b : bodies_)
-    if (!b.position.allFinite() || !b.orientation.coeffs().allFinite())
+  for (std::size_t n = 0; n < bodies_.size(); ++n) {
+    const Body& b = bodies_[n];
+    if (!(packed_[n] ? vec3(spheres_[n].position) : b.position).allFinite() ||
+        !b.orientation.coeffs().allFinite())
       throw DivergedError(
           fmt::format("the motion of body \"{}\" became no number at t = {:.6g} s; try a smaller "
                       "contact.time_step_fraction (now {}) or check the loads on it",
                       b.name, time_, contact_.time_step_fraction));
+  }
   throw DivergedError(fmt::format("a body left the realm of numbers at t = {:.6g} s", time_));
 }
 
 void Particles::list_candidates(double dt) {
   double fastest = 0.0, smallest = std::numeric_limits<double>::infinity();
   for (std::size_t n = 0; n < bodies_.size(); ++n) {
-    fastest = std::max(fastest, velocity_[n].norm() + spin_[n].norm() * parts_.arm(static_cast<int>(n)));
+    if (packed_[n]) {
+      SphereState& s = spheres_[n];
+      s.listed_at = s.position;
+      fastest = std::max(fastest, std::sqrt(dot(s.velocity, s.velocity)));
+    } else {
+      listed_at_[n] = bodies_[n].position;
+      turned_[n] = 0.0;
+      fastest = std::max(fastest, velocity_[n].norm() + spin_[n].norm() * parts_.arm(static_cast<int>(n)));
+    }
     smallest = std::min(smallest, bodies_[n].shape.bounding_radius());
-    listed_at_[n] = bodies_[n].position;
-    turned_[n] = 0.0;
   }
   skin_ = std::clamp(2 * kStepsBetweenLists * fastest * dt, 0.1 * smallest, smallest);
   relist_ = false;
@@ -134,40 +197,36 @@ void Particles::list_candidates(double dt) {
 
 void Particles::kick(double dt, std::span<const Load> loads) {
   const int count = static_cast<int>(bodies_.size());
+  const Vec4 gravity = vec4(gravity_);
   block_work_.resize(static_cast<std::size_t>(block_count(count, kBlock)));
-  for_each_block(count, kBlock, [&](int, int begin, int end) {
-    for (int i = begin; i < end; ++i) {
-      const std::size_t n = static_cast<std::size_t>(i);
-      force_[n].setZero();
-      torque_[n].setZero();
-      for (int ball = parts_.first_ball(i); ball < parts_.first_ball(i + 1); ++ball) {
-        Vec3 force(0, 0, 0);
-        balls_.gather(parts_, ball, force, torque_[n]);
-        force_[n] += force;
-        torque_[n] += (parts_.row(ball).centre() - bodies_[n].position).cross(force);
-      }
+  solids_.gather([&](int body, const Vec3& force, const Vec3& moment, const Vec3& point) {
+    const std::size_t n = static_cast<std::size_t>(body);
+    if (packed_[n]) {
+      spheres_[n].force += vec4(force);
+      spheres_[n].torque += vec4((point - vec3(spheres_[n].position)).cross(force) + moment);
+    } else {
+      force_[n] += force;
+      torque_[n] += (point - bodies_[n].position).cross(force) + moment;
     }
   });
-  solids_.gather(bodies_, force_, torque_);
   // With velocities at the whole step, half of this power over dt before it and half after is exactly the
   // change of kinetic energy.
   for_each_block(count, kBlock, [&](int block, int begin, int end) {
     Work work;
     for (int i = begin; i < end; ++i) {
       const std::size_t n = static_cast<std::size_t>(i);
-      Body& b = bodies_[n];
-      if (!moves(b)) continue;
-      const bool pushed = b.motion == Motion::free;
-      if (pushed) {
-        b.velocity += 0.5 * dt * acceleration(n, loads);
-        momentum_[n] += 0.5 * dt * torque_on(n, loads);
+      if (packed_[n]) {
+        SphereState& s = spheres_[n];
+        const int ball = parts_.first_ball(i);
+        balls_.gather(ball, parts_.row(ball).radius, s.force, s.torque);
+        const Vec4 push = loads.empty() ? gravity : gravity + s.inverse_mass * vec4(loads[n].force);
+        work.into_contacts -= kick_sphere(s, push, load_torque(n, loads), dt);
+        if (!loads.empty())
+          work.from_outside += loads[n].force.dot(vec3(s.velocity)) +
+                               loads[n].torque.dot(s.inverse_inertia * vec3(s.momentum));
+      } else {
+        kick_body(i, loads, dt, work);
       }
-      b.angular_velocity = angular_velocity(b.orientation, momentum_[n], b.inertia);
-      const double by_contacts = force_[n].dot(b.velocity) + torque_[n].dot(b.angular_velocity);
-      work.into_contacts -= by_contacts;
-      if (!pushed) work.from_outside -= by_contacts;  // what keeps a prescribed body on its course
-      if (pushed && !loads.empty())
-        work.from_outside += loads[n].force.dot(b.velocity) + loads[n].torque.dot(b.angular_velocity);
     }
     block_work_[static_cast<std::size_t>(block)] = work;
   });
@@ -177,6 +236,30 @@ void Particles::kick(double dt, std::span<const Load> loads) {
     power_.from_outside += work.from_outside;
   }
   add_work(0.5 * dt);
+}
+
+void Particles::kick_body(int index, std::span<const Load> loads, double dt, Work& work) {
+  const std::size_t n = static_cast<std::size_t>(index);
+  Body& b = bodies_[n];
+  for (int ball = parts_.first_ball(index); ball < parts_.first_ball(index + 1); ++ball) {
+    Vec4 force{}, torque{};
+    const BallRow& row = parts_.row(ball);
+    balls_.gather(ball, row.radius, force, torque);
+    force_[n] += vec3(force);
+    torque_[n] += vec3(torque) + (row.centre() - b.position).cross(vec3(force));
+  }
+  if (!moves(b)) return;
+  const bool pushed = b.motion == Motion::free;
+  if (pushed) {
+    b.velocity += 0.5 * dt * acceleration(n, loads);
+    momentum_[n] += 0.5 * dt * torque_on(n, loads);
+  }
+  b.angular_velocity = angular_velocity(b.orientation, momentum_[n], b.inertia);
+  const double by_contacts = force_[n].dot(b.velocity) + torque_[n].dot(b.angular_velocity);
+  work.into_contacts -= by_contacts;
+  if (!pushed) work.from_outside -= by_contacts;  // what keeps a prescribed body on its course
+  if (pushed && !loads.empty())
+    work.from_outside += loads[n].force.dot(b.velocity) + loads[n].torque.dot(b.angular_velocity);
 }
 
 void Particles::add_work(double dt) {

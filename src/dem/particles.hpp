@@ -9,6 +9,7 @@
 #include "dem/materials.hpp"
 #include "dem/parts.hpp"
 #include "dem/solid_contacts.hpp"
+#include "dem/sphere_state.hpp"
 #include "dem/walls.hpp"
 
 namespace ejecta {
@@ -70,6 +71,13 @@ class Particles {
   void substep(double dt, std::span<const Load> loads);
   void drift(double dt, std::span<const Load> loads);
   void kick(double dt, std::span<const Load> loads);
+  struct Work {
+    double into_contacts = 0.0, from_outside = 0.0;  // W
+  };
+  double drift_body(int index, std::span<const Load> loads, double dt);
+  void kick_body(int index, std::span<const Load> loads, double dt, Work& work);
+  void pack_spheres();
+  void unpack_spheres();
   void add_work(double dt);
   void find_contacts(double dt);
   bool moves(const Body& body) const;
@@ -87,11 +95,10 @@ class Particles {
   std::vector<Vec3> momentum_;         // angular, world, kg m2/s
   std::vector<Vec3> force_, torque_;   // of contacts at the last sub-step
   std::vector<Vec3> velocity_, spin_;  // as the contact laws see them: extrapolated to the whole step
+  std::vector<SphereState> spheres_;   // of bodies that are free spheres, while advance() runs
+  std::vector<char> packed_;           // which those are
   std::vector<Vec3> listed_at_;        // positions for which candidates were listed
   std::vector<double> turned_;         // m, no part of a body has moved farther by its turning since
-  struct Work {
-    double into_contacts = 0.0, from_outside = 0.0;  // W
-  };
   std::vector<double> block_moved_;
   std::vector<Work> block_work_;
   Work power_;  // at the last sub-step

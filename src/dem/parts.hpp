@@ -10,8 +10,8 @@ namespace ejecta {
 struct alignas(64) BallRow {
   double x = 0, y = 0, z = 0, radius = 0;           // m
   double vx = 0, vy = 0, vz = 0, inverse_mass = 0;  // m/s of its centre; 1/kg of its body (0: immovable)
-  double wx = 0, wy = 0, wz = 0, material = 0;      // rad/s
-  double unused[4] = {0, 0, 0, 0};
+  double wx = 0, wy = 0, wz = 0, unused = 0;        // rad/s
+  double material = 0, padding[3] = {0, 0, 0};
 
   Vec3 centre() const { return {x, y, z}; }
   Vec3 velocity() const { return {vx, vy, vz}; }
@@ -44,6 +44,11 @@ class Parts {
   /// Balls of a body: [first_ball(body), first_ball(body + 1)).
   int first_ball(int body) const { return first_ball_[static_cast<std::size_t>(body)]; }
   int first_polytope(int body) const { return first_polytope_[static_cast<std::size_t>(body)]; }
+  /// One ball in the centre of mass and nothing else.
+  bool is_sphere(int body) const {
+    return first_ball(body + 1) - first_ball(body) == 1 && first_polytope(body + 1) == first_polytope(body);
+  }
+  BallRow& sphere_row(int body) { return rows_[static_cast<std::size_t>(first_ball(body))]; }
   /// Farthest that the centre of a part lies from the body's, m.
   double arm(int body) const { return arm_[static_cast<std::size_t>(body)]; }
 

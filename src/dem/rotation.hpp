@@ -9,7 +9,16 @@ namespace ejecta {
 /// 1990), in as many pieces as keep each turn below 0.05 rad: the energy error stays bounded.
 void rotate_free(Quat& orientation, const Vec3& momentum, const Vec3& inertia, double dt);
 
+/// All principal moments equal: spin and angular momentum are parallel.
+inline bool is_round(const Vec3& inertia) { return inertia[0] == inertia[1] && inertia[1] == inertia[2]; }
+
+/// A turn by the rotation vector (rad, world axes).
+void turn(Quat& orientation, const Vec3& rotation);
+
 /// Angular velocity (world, rad/s) of a body with this angular momentum.
-Vec3 angular_velocity(const Quat& orientation, const Vec3& momentum, const Vec3& inertia);
+inline Vec3 angular_velocity(const Quat& orientation, const Vec3& momentum, const Vec3& inertia) {
+  if (is_round(inertia)) return momentum / inertia[0];
+  return orientation * (orientation.conjugate() * momentum).cwiseQuotient(inertia);
+}
 
 }  // namespace ejecta

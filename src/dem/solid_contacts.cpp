@@ -62,6 +62,11 @@ void SolidContacts::compute(const Parts& parts, std::span<const Body> bodies, st
     return Side{bodies[n].material, inverse_mass(bodies[n]),
                 velocity[n] + spin[n].cross(point - bodies[n].position), spin[n]};
   };
+  const auto side_of_ball = [&](int ball, const Vec3& point) {
+    const BallRow& row = parts.row(ball);
+    return Side{static_cast<int>(row.material), row.inverse_mass,
+                row.velocity() + row.spin().cross(point - row.centre()), row.spin()};
+  };
   const auto compute_pair = [&](SolidPair& pair) {
     pair.touch = find_touch(pair, parts, bodies, walls);
     pair.force.setZero();
@@ -71,7 +76,8 @@ void SolidContacts::compute(const Parts& parts, std::span<const Body> bodies, st
       pair.history = {};
       return;
     }
-    const Side a = side_of(pair.body_a, pair.touch.point);
+    const Side a = pair.a.kind == PartKind::ball ? side_of_ball(pair.a.index, pair.touch.point)
+                                                 : side_of(pair.body_a, pair.touch.point);
     if (pair.body_b >= 0) {
       apply_law(pair, a, side_of(pair.body_b, pair.touch.point), materials, dt);
     } else {
@@ -82,20 +88,6 @@ void SolidContacts::compute(const Parts& parts, std::span<const Body> bodies, st
   for_each_block(static_cast<int>(pairs_.size()), kBlock, [&](int, int begin, int end) {
     for (int n = begin; n < end; ++n) compute_pair(pairs_[static_cast<std::size_t>(n)]);
   });
-}
-
-void SolidContacts::gather(std::span<const Body> bodies, std::span<Vec3> force,
-                           std::span<Vec3> torque) const {
-  for (const SolidPair& p : pairs_) {
-    if (!(p.touch.overlap > 0)) continue;
-    const std::size_t a = static_cast<std::size_t>(p.body_a);
-    force[a] += p.force;
-    torque[a] += (p.touch.point - bodies[a].position).cross(p.force) + p.moment;
-    if (p.body_b < 0) continue;
-    const std::size_t b = static_cast<std::size_t>(p.body_b);
-    force[b] -= p.force;
-    torque[b] -= (p.touch.point - bodies[b].position).cross(p.force) + p.moment;
-  }
 }
 
 double SolidContacts::elastic() const {
