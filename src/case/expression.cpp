@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -14,53 +13,70 @@
 
 namespace ejecta {
 namespace {
-constexpr int max_stack = 32;  // depth of the evaluation stack; deeper formulas are refused at compile time
+
+constexpr int max_stack = 32, max_nesting = 200;  // deeper formulas are refused when they are compiled
+
+double truth(bool b) { return b ? 1.0 : 0.0; }
+
+using Function1 = double (*)(double);
+using Function2 = double (*)(double, double);
+
+const std::map<std::string_view, Function1>& functions_of_one() {
+  static const std::map<std::string_view, Function1> list{
+      {"sin", std::sin},
+      {"cos", std::cos},
+      {"tan", std::tan},
+      {"asin", std::asin},
+      {"acos", std::acos},
+      {"atan", std::atan},
+      {"sinh", std::sinh},
+      {"cosh", std::cosh},
+      {"tanh", std::tanh},
+      {"exp", std::exp},
+      {"log", std::log},
+      {"ln", std::log},
+      {"log10", std::log10},
+      {"sqrt", std::sqrt},
+      {"abs", std::fabs},
+      {"floor", std::floor},
+      {"step", [](double a) { return std::isnan(a) ? a : truth(a >= 0.0); }}};
+  return list;
 }
 
-enum class Expression::Op : unsigned char {
-  constant,
-  x,
-  y,
-  z,
-  t,
-  negate,
-  sin,
-  cos,
-  tan,
-  asin,
-  acos,
-  atan,
-  sinh,
-  cosh,
-  tanh,
-  exp,
-  log,
-  log10,
-  sqrt,
-  abs,
-  floor,
-  step,
-  add,
-  subtract,
-  multiply,
-  divide,
-  power,
-  atan2,
-  min,
-  max,
-  less,
-  greater,
-  less_equal,
-  greater_equal,
-  both,
-  either,
-  choose
+const std::map<std::string_view, Function2>& functions_of_two() {
+  // Unlike std::fmin, NaN is not hidden.
+  static const std::map<std::string_view, Function2> list{
+      {"atan2", std::atan2},
+      {"pow", std::pow},
+      {"min", [](double a, double b) { return std::isnan(b) || b < a ? b : a; }},
+      {"max", [](double a, double b) { return std::isnan(b) || b > a ? b : a; }}};
+  return list;
+}
+
+struct Operator {
+  std::string_view sign;
+  Function2 apply;
 };
+/// Binary operators by level, loosest first; within a level a sign before its own beginning ("<=" before
+/// "<").
+const std::array<std::vector<Operator>, 5>& operators() {
+  static const std::array<std::vector<Operator>, 5> levels{
+      {{{"||", [](double a, double b) { return truth(a != 0.0 || b != 0.0); }}},
+       {{"&&", [](double a, double b) { return truth(a != 0.0 && b != 0.0); }}},
+       {{"<=", [](double a, double b) { return truth(a <= b); }},
+        {">=", [](double a, double b) { return truth(a >= b); }},
+        {"<", [](double a, double b) { return truth(a < b); }},
+        {">", [](double a, double b) { return truth(a > b); }}},
+       {{"+", [](double a, double b) { return a + b; }}, {"-", [](double a, double b) { return a - b; }}},
+       {{"*", [](double a, double b) { return a * b; }}, {"/", [](double a, double b) { return a / b; }}}}};
+  return levels;
+}
+
+}  // namespace
 
 /// Recursive descent from text to a stack program.
 class ExpressionCompiler {
  public:
-  using Op = Expression::Op;
   ExpressionCompiler(std::string_view text, Expression& out) : text_(text), out_(out) {}
 
   void compile() {
@@ -70,22 +86,7 @@ class ExpressionCompiler {
   }
 
  private:
-  static constexpr int max_nesting = 200;
-
-  static const std::map<std::string_view, Op>& unary() {
-    static const std::map<std::string_view, Op> names{
-        {"sin", Op::sin},     {"cos", Op::cos},   {"tan", Op::tan},   {"asin", Op::asin},
-        {"acos", Op::acos},   {"atan", Op::atan}, {"sinh", Op::sinh}, {"cosh", Op::cosh},
-        {"tanh", Op::tanh},   {"exp", Op::exp},   {"log", Op::log},   {"ln", Op::log},
-        {"log10", Op::log10}, {"sqrt", Op::sqrt}, {"abs", Op::abs},   {"floor", Op::floor},
-        {"step", Op::step}};
-    return names;
-  }
-  static const std::map<std::string_view, Op>& binary() {
-    static const std::map<std::string_view, Op> names{
-        {"atan2", Op::atan2}, {"min", Op::min}, {"max", Op::max}, {"pow", Op::power}};
-    return names;
-  }
+  using Kind = Expression::Kind;
 
   [[noreturn]] void fail(const std::string& what) const {
     throw InputError(fmt::format("{} at column {} of the formula \"{}\"", what, at_ + 1, text_));
@@ -106,78 +107,60 @@ class ExpressionCompiler {
     if (!take(token)) fail(fmt::format("\"{}\" expected", token));
   }
 
-  void emit(Op op, double value = 0.0) {
-    depth_ += op <= Op::t ? 1 : op <= Op::step ? 0 : op < Op::choose ? -1 : -2;
+  void emit(const Expression::Instruction& i) {
+    depth_ += i.kind <= Kind::t ? 1 : i.kind == Kind::one ? 0 : i.kind == Kind::two ? -1 : -2;
     if (depth_ > max_stack) fail("formula too deeply nested");
-    out_.program_.push_back({op, value});
+    out_.program_.push_back(i);
+  }
+  void emit(Expression::Function1 f) { emit({.kind = Kind::one, .one = f}); }
+  void emit(Expression::Function2 f) { emit({.kind = Kind::two, .two = f}); }
+
+  void enter() {
+    if (++nesting_ > max_nesting) fail("formula too deeply nested");
   }
 
   void choice() {
-    if (++nesting_ > max_nesting) fail("formula too deeply nested");
-    comparison();
+    enter();
+    binary(0);
     if (take("?")) {
       choice();
       expect(":");
       choice();
-      emit(Op::choose);
+      emit({.kind = Kind::choose});
     }
     --nesting_;
   }
 
-  void comparison() {
-    relation();
-    while (true) {
-      if (take("&&")) relation(), emit(Op::both);
-      else if (take("||")) relation(), emit(Op::either);
-      else return;
+  void binary(std::size_t level) {
+    if (level == operators().size()) return sign();
+    binary(level + 1);
+    while (const Operator* o = take_operator(level)) {
+      binary(level + 1);
+      emit(o->apply);
     }
   }
 
-  void relation() {
-    sum();
-    if (take("<=")) sum(), emit(Op::less_equal);
-    else if (take(">=")) sum(), emit(Op::greater_equal);
-    else if (take("<")) sum(), emit(Op::less);
-    else if (take(">")) sum(), emit(Op::greater);
+  const Operator* take_operator(std::size_t level) {
+    for (const Operator& o : operators()[level])
+      if (take(o.sign)) return &o;
+    return nullptr;
   }
 
-  void sum() {
-    product();
-    while (true) {
-      if (take("+")) product(), emit(Op::add);
-      else if (take("-")) product(), emit(Op::subtract);
-      else return;
-    }
-  }
-
-  void product() {
-    signed_factor();
-    while (true) {
-      if (take("*")) signed_factor(), emit(Op::multiply);
-      else if (take("/")) signed_factor(), emit(Op::divide);
-      else return;
-    }
-  }
-
-  void signed_factor() {
-    if (++nesting_ > max_nesting) fail("formula too deeply nested");
+  void sign() {
+    enter();
     if (take("-")) {
-      signed_factor();
-      emit(Op::negate);
+      sign();
+      emit([](double a) { return -a; });
     } else if (take("+")) {
-      signed_factor();
+      sign();
     } else {
-      power();
+      atom();
+      if (take("^")) {
+        sign();
+        emit(static_cast<Expression::Function2>(std::pow));
+      }
     }
     --nesting_;
-  }
-
-  void power() {
-    atom();
-    if (take("^")) {
-      signed_factor();
-      emit(Op::power);
-    }
   }
 
   void atom() {
@@ -200,31 +183,36 @@ class ExpressionCompiler {
     const auto [end, error] = std::from_chars(first, text_.data() + text_.size(), value);
     if (error != std::errc()) fail("not a number");
     at_ += static_cast<std::size_t>(end - first);
-    emit(Op::constant, value);
+    emit({.kind = Kind::constant, .value = value});
   }
 
-  void name() {
+  std::string_view word() {
     const std::size_t start = at_;
     const auto letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; };
     const auto digit = [](char c) { return c >= '0' && c <= '9'; };
     while (at_ < text_.size() && (letter(text_[at_]) || (at_ > start && digit(text_[at_])))) ++at_;
-    const std::string_view word = text_.substr(start, at_ - start);
-    if (word == "x" || word == "y" || word == "z") {
+    return text_.substr(start, at_ - start);
+  }
+
+  void name() {
+    const std::size_t start = at_;
+    const std::string_view w = word();
+    const auto one = functions_of_one().find(w);
+    const auto two = functions_of_two().find(w);
+    if (w == "x" || w == "y" || w == "z") {
       out_.uses_space_ = true;
-      emit(word == "x" ? Op::x : word == "y" ? Op::y : Op::z);
-    } else if (word == "t") {
+      emit({.kind = w == "x" ? Kind::x : w == "y" ? Kind::y : Kind::z});
+    } else if (w == "t") {
       out_.uses_time_ = true;
-      emit(Op::t);
-    } else if (word == "pi") {
-      emit(Op::constant, std::numbers::pi);
-    } else if (word == "e") {
-      emit(Op::constant, std::numbers::e);
-    } else if (const auto one = unary().find(word); one != unary().end()) {
+      emit({.kind = Kind::t});
+    } else if (w == "pi" || w == "e") {
+      emit({.kind = Kind::constant, .value = w == "pi" ? std::numbers::pi : std::numbers::e});
+    } else if (one != functions_of_one().end()) {
       expect("(");
       choice();
       expect(")");
       emit(one->second);
-    } else if (const auto two = binary().find(word); two != binary().end()) {
+    } else if (two != functions_of_two().end()) {
       expect("(");
       choice();
       expect(",");
@@ -233,8 +221,8 @@ class ExpressionCompiler {
       emit(two->second);
     } else {
       at_ = start;
-      fail(word.empty() ? fmt::format("unexpected \"{}\"", text_[at_])
-                        : fmt::format("unknown name \"{}\" (known: x, y, z, t, pi, e and functions)", word));
+      fail(w.empty() ? fmt::format("unexpected \"{}\"", text_[at_])
+                     : fmt::format("unknown name \"{}\" (known: x, y, z, t, pi, e and functions)", w));
     }
   }
 
@@ -250,114 +238,32 @@ double Expression::operator()(double x, double y, double z, double t) const {
   std::array<double, max_stack + 1> stack{};  // an empty program returns 0
   int top = -1;
   for (const Instruction& i : program_) {
-    if (i.op <= Op::t) {
-      const double leaf[] = {i.value, x, y, z, t};
-      stack[++top] = leaf[static_cast<int>(i.op)];
-      continue;
-    }
-    if (i.op == Op::choose) {
-      top -= 2;
-      stack[top] = stack[top] != 0.0 ? stack[top + 1] : stack[top + 2];
-      continue;
-    }
-    if (i.op > Op::step) --top;
-    double& a = stack[top];
-    const double b = stack[top + 1];
-    switch (i.op) {
-      case Op::negate:
-        a = -a;
+    switch (i.kind) {
+      case Kind::constant:
+        stack[++top] = i.value;
         break;
-      case Op::sin:
-        a = std::sin(a);
+      case Kind::x:
+        stack[++top] = x;
         break;
-      case Op::cos:
-        a = std::cos(a);
+      case Kind::y:
+        stack[++top] = y;
         break;
-      case Op::tan:
-        a = std::tan(a);
+      case Kind::z:
+        stack[++top] = z;
         break;
-      case Op::asin:
-        a = std::asin(a);
+      case Kind::t:
+        stack[++top] = t;
         break;
-      case Op::acos:
-        a = std::acos(a);
+      case Kind::one:
+        stack[top] = i.one(stack[top]);
         break;
-      case Op::atan:
-        a = std::atan(a);
+      case Kind::two:
+        --top;
+        stack[top] = i.two(stack[top], stack[top + 1]);
         break;
-      case Op::sinh:
-        a = std::sinh(a);
-        break;
-      case Op::cosh:
-        a = std::cosh(a);
-        break;
-      case Op::tanh:
-        a = std::tanh(a);
-        break;
-      case Op::exp:
-        a = std::exp(a);
-        break;
-      case Op::log:
-        a = std::log(a);
-        break;
-      case Op::log10:
-        a = std::log10(a);
-        break;
-      case Op::sqrt:
-        a = std::sqrt(a);
-        break;
-      case Op::abs:
-        a = std::abs(a);
-        break;
-      case Op::floor:
-        a = std::floor(a);
-        break;
-      case Op::step:
-        a = a >= 0.0 ? 1.0 : 0.0;
-        break;
-      case Op::add:
-        a += b;
-        break;
-      case Op::subtract:
-        a -= b;
-        break;
-      case Op::multiply:
-        a *= b;
-        break;
-      case Op::divide:
-        a /= b;
-        break;
-      case Op::power:
-        a = std::pow(a, b);
-        break;
-      case Op::atan2:
-        a = std::atan2(a, b);
-        break;
-      case Op::min:
-        a = std::isnan(b) ? b : std::min(a, b);
-        break;
-      case Op::max:
-        a = std::isnan(b) ? b : std::max(a, b);
-        break;
-      case Op::less:
-        a = a < b ? 1.0 : 0.0;
-        break;
-      case Op::greater:
-        a = a > b ? 1.0 : 0.0;
-        break;
-      case Op::less_equal:
-        a = a <= b ? 1.0 : 0.0;
-        break;
-      case Op::greater_equal:
-        a = a >= b ? 1.0 : 0.0;
-        break;
-      case Op::both:
-        a = a != 0.0 && b != 0.0 ? 1.0 : 0.0;
-        break;
-      case Op::either:
-        a = a != 0.0 || b != 0.0 ? 1.0 : 0.0;
-        break;
-      default:
+      case Kind::choose:
+        top -= 2;
+        stack[top] = stack[top] != 0.0 ? stack[top + 1] : stack[top + 2];
         break;
     }
   }

@@ -6,9 +6,10 @@ namespace ejecta {
 
 /// A formula in x, y, z (m) and t (s), e.g. "exp(-t) * sin(2 * pi * x)". Compiled once into a stack program;
 /// evaluation is const, allocates nothing and may run in several threads at once.
-/// Operators: + - * / ^ (to the right), comparisons and && || (1 or 0), cond ? a : b, parentheses. Constants:
-/// pi, e. Functions: sin cos tan asin acos atan atan2 sinh cosh tanh exp log log10 sqrt abs floor min max
-/// step(x) = x >= 0.
+///
+/// Operators, loosest first: cond ? a : b; ||; &&; < <= > >= (1 or 0); + -; * /; sign; ^ (to the right).
+/// Constants: pi, e. Functions: sin cos tan asin acos atan atan2 sinh cosh tanh exp log (= ln) log10 sqrt abs
+/// floor min max pow, and step(x) = 1 where x >= 0, else 0.
 class Expression {
  public:
   Expression() = default;  ///< the constant 0
@@ -22,10 +23,14 @@ class Expression {
 
  private:
   friend class ExpressionCompiler;
-  enum class Op : unsigned char;
+  using Function1 = double (*)(double);
+  using Function2 = double (*)(double, double);
+  enum class Kind : unsigned char { constant, x, y, z, t, one, two, choose };
   struct Instruction {
-    Op op;
+    Kind kind;
     double value = 0.0;
+    Function1 one = nullptr;
+    Function2 two = nullptr;
   };
   std::vector<Instruction> program_;
   bool uses_space_ = false, uses_time_ = false;

@@ -8,6 +8,8 @@
 #include <memory>
 
 #include "base/error.hpp"
+#include "case/node_path.hpp"
+#include "case/override.hpp"
 #include "case/problem.hpp"
 #include "case/reader.hpp"
 #include "case/sense.hpp"

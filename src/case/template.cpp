@@ -9,22 +9,13 @@
 #include "base/error.hpp"
 #include "base/text.hpp"
 #include "case/documented.hpp"
+#include "case/node_path.hpp"
 #include "case/schema.hpp"
 #include "case/template_texts.hpp"
 #include "case/toml.hpp"
 
 namespace ejecta {
 namespace {
-
-const Node* find(const Node& root, const std::string& name) {
-  const Node* node = &root;
-  for (std::size_t start = 0; node && start < name.size();) {
-    const std::size_t dot = std::min(name.find('.', start), name.size());
-    node = node->is_table() ? node->find(name.substr(start, dot - start)) : nullptr;
-    start = dot + 1;
-  }
-  return node;
-}
 
 /// What may stand behind "key = ": for a key left out, its default or else an example.
 std::string default_value(const Key& key) {
@@ -80,7 +71,7 @@ std::string case_template(const std::string& kind) {
     std::vector<std::string> unused;
     std::set<std::string> listed;
     for (const Section& s : sections(c)) {
-      const Node* node = find(root, s.name);
+      const Node* node = find_section(root, s.name);
       if (!node && !s.name.starts_with("boundary.") && !s.name.starts_with("grid."))
         unused.push_back(header(s));
       if (!node || (!s.repeated && !node->is_table())) continue;

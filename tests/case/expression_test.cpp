@@ -27,6 +27,7 @@ TEST(Expression, Precedence) {
   EXPECT_EQ(value("2 ^ -1"), 0.5);
   EXPECT_EQ(value("1 < 2 && 3 < 2 ? 5 : 7"), 7.0);
   EXPECT_EQ(value("1 < 2 || 3 < 2 ? 5 : 7"), 5.0);
+  EXPECT_EQ(value("1 || 1 && 0"), 1.0) << "&& binds tighter";
   EXPECT_EQ(value("1 <= 1") + value("2 >= 3") + value("2 > 1"), 2.0);
 }
 

@@ -1,0 +1,13 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "case/node.hpp"
+#include "case/problem.hpp"
+
+namespace ejecta {
+
+/// Puts "body.0.velocity=[...]" into the tree; list elements are addressed by number or by their `name`.
+void apply_override(Node& root, const std::string& assignment, std::vector<Problem>& problems);
+
+}  // namespace ejecta
