@@ -1,4 +1,8 @@
+#include <fmt/format.h>
+
 #include <nlohmann/json.hpp>
+
+#include "base/text.hpp"
 
 #include "case/documented.hpp"
 #include "case/explain.hpp"
@@ -19,7 +23,8 @@ Json list_of(Json item, std::size_t count = 0) {
 struct TypeOf {
   const Key& key;
   Json number() const {
-    if (key.dimension != Dimension::none) return {{"type", "string"}, {"pattern", "^\\s*[-+]?[0-9.]"}};
+    if (key.dimension != Dimension::none)
+      return {{"type", "string"}, {"pattern", fmt::format("^{}$", quantity())}};
     Json type{{"type", "number"}};
     return bounded(type);
   }
@@ -44,8 +49,8 @@ struct TypeOf {
   Json operator()(const std::optional<std::array<Vec3, 2>>*) const {
     return list_of(list_of(number(), 3), 2);
   }
-  Json operator()(const Formula&) const { return text(); }
-  Json operator()(const Formulas&) const { return list_of(text(), 3); }
+  Json operator()(const Formula&) const { return formula(); }
+  Json operator()(const Formulas&) const { return list_of(formula(), 3); }
   Json operator()(const Choice& c) const {
     Json names = Json::array();
     for (const Word& w : *c.words) names.push_back(w.name);
@@ -53,6 +58,16 @@ struct TypeOf {
   }
 
  private:
+  /// Pattern of a number with one of the units.
+  std::string quantity() const {
+    std::vector<std::string> units = known_units(key.dimension);
+    for (std::string& unit : units)
+      for (std::size_t at = 0; (at = unit.find('.', at)) != std::string::npos; at += 2) unit.insert(at, "\\");
+    return fmt::format(R"(\s*[-+]?[0-9.]+([eE][-+]?[0-9]+)?\s*({})\s*)", joined(units, "|"));
+  }
+  Json formula() const {
+    return {{"type", "string"}, {"pattern", fmt::format(R"(^(\s*=.*|{})$)", quantity())}};
+  }
   Json bounded(Json type) const {
     const Bounds& b = key.bounds;
     if (b.least > -1e300) type[b.open ? "exclusiveMinimum" : "minimum"] = b.least;

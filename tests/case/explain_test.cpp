@@ -5,6 +5,7 @@
 
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <regex>
 #include <sstream>
 
 #include "base/error.hpp"
@@ -77,6 +78,9 @@ TEST(Schema, JsonSchemaIsUpToDate) {
   EXPECT_EQ(json["properties"]["body"]["items"]["properties"]["shape"]["enum"][0], "sphere");
   EXPECT_EQ(json["properties"]["boundary"]["properties"]["z_min"]["properties"]["patch"]["type"], "array");
   EXPECT_EQ(json["properties"]["run"]["required"][0], "end_time");
+  const std::regex time(json["properties"]["run"]["properties"]["end_time"]["pattern"].get<std::string>());
+  for (const char* good : {"8 ms", "1.5e-3 s", "2 min"}) EXPECT_TRUE(std::regex_match(good, time)) << good;
+  for (const char* bad : {"8", "ms", "8 mm"}) EXPECT_FALSE(std::regex_match(bad, time)) << bad;
 }
 
 class Template : public testing::TestWithParam<std::string> {};
