@@ -68,7 +68,7 @@ export function replayView(runs: Run[], player: Player): HTMLElement | null {
     slice.select(air, 0);
     const options = shown.flatMap((run, r) => run.replay!.rasters.map((raster, n): [string, string] =>
       [`${r} ${n}`, shown.length > 1 ? `${raster.name}, ${run.name}` : raster.name]));
-    const chooser = select("Slice", options, `${shown.indexOf(air)} 0`, (value) => {
+    const chooser = select("Plane", options, `${shown.indexOf(air)} 0`, (value) => {
       const [r, n] = value.split(" ").map(Number) as [number, number];
       slice!.select(shown[r]!, n);
       scene?.select(shown[r]!);
