@@ -100,7 +100,8 @@ TEST_P(Template, CommentedKeysHoldReadableValues) {
   for (std::string line; std::getline(lines, line);) {
     if (line.starts_with("[[")) {
       section = line.substr(2, line.find(']') - 2);
-      section += "." + std::to_string(elements[section]++);
+      const int number = elements[section]++;
+      section.append(".").append(std::to_string(number));
     } else if (line.starts_with("[")) {
       section = line.substr(1, line.find(']') - 1);
     }
