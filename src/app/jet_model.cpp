@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <filesystem>
+#include <limits>
 #include <numbers>
 
 #include "app/flow_model.hpp"
@@ -115,12 +116,19 @@ JetSample JetModel::sample(const Vec3& position) const {
   return s;
 }
 
-JetFlow JetModel::through(int k) const {
+JetFlow JetModel::through(int k) const { return sum_flow(k, std::numeric_limits<double>::infinity()); }
+
+JetFlow JetModel::orifice_flow() const { return sum_flow(0, inlets_[0].radius); }
+
+JetFlow JetModel::sum_flow(int k, double within) const {
   const Metrics x = grid_.metrics(0), y = grid_.metrics(1);
   const godunov::Block& flux = solver_->flux(2);
   JetFlow sum;
   for (int j = 0; j < grid_.ny(); ++j)
     for (int i = 0; i < grid_.nx(); ++i) {
+      const Vec3 from_axis = grid_.centre(i, j, 0) - inlets_[0].centre;
+      const double radius = grid_.axisymmetric() ? from_axis.x() : std::hypot(from_axis.x(), from_axis.y());
+      if (radius > within) continue;
       const double area = double(x.volume[i]) * double(y.volume[j]);
       sum.mass += area * double(flux[godunov::kRho](i, j, k));
       sum.momentum += area * double(flux[godunov::kW](i, j, k));

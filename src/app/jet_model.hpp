@@ -46,6 +46,8 @@ class JetModel {
   JetSample sample(const Vec3& position) const;
   /// Through the z-plane of lower face k, whole jet (symmetry planes and the axis made up for).
   JetFlow through(int k) const;
+  /// Through the cells of the orifice alone.
+  JetFlow orifice_flow() const;
   /// Exact one-dimensional state the orifice should have now.
   NozzleExit ideal_exit() const;
 
@@ -61,6 +63,7 @@ class JetModel {
 
  private:
   void drive(double time);
+  JetFlow sum_flow(int k, double within) const;
   Case case_;
   Grid grid_;
   Valve valve_;

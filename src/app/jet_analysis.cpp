@@ -1,0 +1,99 @@
+#include "app/jet_analysis.hpp"
+
+#include <cmath>
+
+namespace ejecta {
+namespace {
+
+constexpr double kLeastAxialVelocity = 1.0;  ///< m/s: below it there is no jet whose width could be told
+
+double half_radius(const JetModel& jet, double z, double on_axis) {
+  const Axis& r = jet.grid().axis(0);
+  double before = on_axis, at_before = r.face.front();
+  for (const double x : r.centre) {
+    const double w = jet.sample({x, 0.0, z}).velocity.z();
+    if (w < 0.5 * on_axis) {
+      const double share = (before - 0.5 * on_axis) / (before - w);
+      return at_before + share * (x - at_before) - r.face.front();
+    }
+    before = w;
+    at_before = x;
+  }
+  return 0.0;
+}
+
+/// Slope and intercept of y over x by least squares.
+std::pair<double, double> line_through(const std::vector<double>& x, const std::vector<double>& y) {
+  const double n = double(x.size());
+  double sx = 0, sy = 0, sxx = 0, sxy = 0;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    sx += x[i];
+    sy += y[i];
+    sxx += x[i] * x[i];
+    sxy += x[i] * y[i];
+  }
+  const double slope = (n * sxy - sx * sy) / (n * sxx - sx * sx);
+  return {slope, (sy - slope * sx) / n};
+}
+
+}  // namespace
+
+Centreline centreline(const JetModel& jet) {
+  Centreline line;
+  const Vec3 lower = jet.grid().lower();
+  for (const double z : jet.grid().axis(2).centre) {
+    const JetSample s = jet.sample({lower.x(), lower.y(), z});
+    const double w = s.velocity.z();
+    line.z.push_back(z - lower.z());
+    line.samples.push_back(s);
+    line.half_radius.push_back(w > kLeastAxialVelocity ? half_radius(jet, z, w) : 0.0);
+  }
+  return line;
+}
+
+ShockStructure shock_structure(const Centreline& line) {
+  ShockStructure found;
+  const auto& s = line.samples;
+  std::size_t peak = 0;
+  for (std::size_t n = 1; n + 1 < s.size() && found.mach_disk == 0.0; ++n) {
+    if (s[n].mach > s[peak].mach) peak = n;
+    // The disk: the flow has been well above Mach 1 and falls below it within a few cells.
+    if (s[peak].mach > 1.5 && s[n].mach >= 1.0 && s[n + 1].mach < 1.0) {
+      // Its place is where the Mach number falls fastest between the peak and here.
+      std::size_t steepest = peak;
+      for (std::size_t m = peak; m <= n; ++m)
+        if (s[m].mach - s[m + 1].mach > s[steepest].mach - s[steepest + 1].mach) steepest = m;
+      found.mach_disk = 0.5 * (line.z[steepest] + line.z[steepest + 1]);
+      found.peak_mach = s[peak].mach;
+    }
+  }
+  for (std::size_t n = 1; n + 1 < s.size() && found.pressure_maxima.size() < 8; ++n) {
+    const bool behind_expansion = s[n].mach > 0.0 && line.z[n] > line.z[peak];
+    if (behind_expansion && s[n].pressure > s[n - 1].pressure && s[n].pressure >= s[n + 1].pressure &&
+        s[n].pressure > 1.02 * s.back().pressure)
+      found.pressure_maxima.push_back(line.z[n]);
+  }
+  if (!found.pressure_maxima.empty()) found.first_cell = found.pressure_maxima.front();
+  return found;
+}
+
+FarField far_field(const Centreline& line, double equivalent_velocity, double diameter, double from,
+                   double to) {
+  std::vector<double> z, inverse, half;
+  for (std::size_t n = 0; n < line.z.size(); ++n) {
+    const double w = line.samples[n].velocity.z();
+    if (line.z[n] < from || line.z[n] > to || w < kLeastAxialVelocity || line.half_radius[n] <= 0.0) continue;
+    z.push_back(line.z[n]);
+    inverse.push_back(equivalent_velocity / w);
+    half.push_back(line.half_radius[n]);
+  }
+  FarField f;
+  if (z.size() < 3) return f;
+  const auto [slope, intercept] = line_through(z, inverse);
+  f.decay = 1.0 / (slope * diameter);
+  f.virtual_origin = -intercept / slope;
+  f.spreading = line_through(z, half).first;
+  return f;
+}
+
+}  // namespace ejecta

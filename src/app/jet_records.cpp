@@ -1,0 +1,176 @@
+#include "app/jet_records.hpp"
+
+#include <array>
+#include <cmath>
+#include <numbers>
+
+namespace ejecta {
+namespace {
+
+/// The valve counts as fully open here.
+constexpr double kFullyOpen = 0.999;
+
+/// Points of the average over the opening of a transducer: rings of equal area, evenly around.
+constexpr int kRings = 4, kAround = 8;
+
+double percent(double value, double reference) { return 100.0 * (value / reference - 1.0); }
+
+}  // namespace
+
+JetProbe::JetProbe(const JetModel&, const ProbeSpec& spec, const output::RunDirectory& directory,
+                   std::span<const std::string> provenance)
+    : spec_(spec),
+      history_(directory.history(spec.name), provenance,
+               {{"total_gauge", "Pa"},
+                {"transducer", "Pa"},
+                {"velocity_z", "m/s"},
+                {"mach", "1"},
+                {"pressure", "Pa"},
+                {"density", "kg/m3"},
+                {"k", "m2/s2"},
+                {"epsilon", "m2/s3"}}) {}
+
+double JetProbe::over_opening(const JetModel& jet) const {
+  if (spec_.diameter <= 0.0) return jet.sample(spec_.position).pitot_gauge;
+  double sum = 0.0;
+  for (int ring = 0; ring < kRings; ++ring)
+    for (int n = 0; n < kAround; ++n) {
+      const double r = 0.5 * spec_.diameter * std::sqrt((ring + 0.5) / kRings);
+      const double angle = 2.0 * std::numbers::pi * (n + 0.5) / kAround;
+      Vec3 at = spec_.position + Vec3(r * std::cos(angle), r * std::sin(angle), 0.0);
+      if (jet.grid().axisymmetric()) at = {std::hypot(at.x(), at.y()), 0.0, at.z()};
+      sum += jet.sample(at).pitot_gauge;
+    }
+  return sum / (kRings * kAround);
+}
+
+void JetProbe::advance(const JetModel& jet, double dt) {
+  const double seen = over_opening(jet);
+  const double follow = spec_.response_time > 0.0 ? 1.0 - std::exp(-dt / spec_.response_time) : 1.0;
+  reading_ += follow * (seen - reading_);
+  const JetSample s = jet.sample(spec_.position);
+  if (reading_ > peak_reading_) peak_reading_ = reading_, peak_reading_at_ = jet.time();
+  if (s.total_gauge > peak_total_) peak_total_ = s.total_gauge, peak_total_at_ = jet.time();
+  peak_mach_ = std::max(peak_mach_, s.mach);
+}
+
+void JetProbe::write(const JetModel& jet) {
+  const JetSample s = jet.sample(spec_.position);
+  const std::array<double, 8> row{s.total_gauge, reading_, s.velocity.z(), s.mach, s.pressure,
+                                  s.density,     s.k,      s.epsilon};
+  history_.add(jet.time(), row);
+}
+
+nlohmann::ordered_json JetProbe::summary() const {
+  return {{"name", spec_.name},
+          {"position_m", {spec_.position.x(), spec_.position.y(), spec_.position.z()}},
+          {"peak_total_gauge_Pa", peak_total_},
+          {"peak_total_gauge_at_s", peak_total_at_},
+          {"peak_transducer_Pa", peak_reading_},
+          {"peak_transducer_at_s", peak_reading_at_},
+          {"peak_mach", peak_mach_}};
+}
+
+OrificeRecord::OrificeRecord(const output::RunDirectory& directory, std::span<const std::string> provenance)
+    : history_(directory.history("orifice"), provenance,
+               {{"opening", "1"},
+                {"total_pressure", "Pa"},
+                {"mass_flow", "kg/s"},
+                {"mass_flow_exact", "kg/s"},
+                {"thrust", "N"},
+                {"thrust_exact", "N"},
+                {"mass", "kg"}}) {}
+
+void OrificeRecord::advance(const JetModel& jet, double dt) {
+  const JetFlow flow = jet.orifice_flow();
+  mass_ += flow.mass * dt;
+  impulse_ += flow.momentum * dt;
+  if (jet.valve().opening(jet.time()) < kFullyOpen) return;
+  const ValveSpec& v = jet.scenario().valve;
+  open_time_ += dt;
+  mass_flow_ += flow.mass * dt;
+  thrust_ += flow.momentum * dt;
+  ideal_mass_flow_ += nozzle_mass_flow(jet.ideal_exit(), v.discharge_coefficient, v.orifice_diameter) * dt;
+  ideal_thrust_ += nozzle_thrust(jet.ideal_exit(), v.discharge_coefficient, v.orifice_diameter) * dt;
+}
+
+void OrificeRecord::write(const JetModel& jet) {
+  const ValveSpec& v = jet.scenario().valve;
+  const JetFlow flow = jet.orifice_flow();
+  const NozzleExit ideal = jet.ideal_exit();
+  const std::array<double, 7> row{jet.valve().opening(jet.time()),
+                                  jet.valve().total_pressure(jet.time(), jet.ambient_pressure()),
+                                  flow.mass,
+                                  nozzle_mass_flow(ideal, v.discharge_coefficient, v.orifice_diameter),
+                                  flow.momentum,
+                                  nozzle_thrust(ideal, v.discharge_coefficient, v.orifice_diameter),
+                                  mass_};
+  history_.add(jet.time(), row);
+}
+
+nlohmann::ordered_json OrificeRecord::summary(const JetModel& jet) const {
+  const Case& c = jet.scenario();
+  const Gas gas{c.fluid.gamma, c.fluid.gas_constant};
+  nlohmann::ordered_json r{
+      {"diameter_m", c.valve.orifice_diameter},
+      {"cells_across", jet.cells_across_orifice()},
+      {"mass_kg", mass_},
+      {"normal_litres", nozzle_normal_litres(gas, mass_)},
+      {"impulse_N_s", impulse_},
+      {"isothermal_work_J", nozzle_isothermal_work(gas, mass_, c.environment.temperature,
+                                                   c.valve.supply_pressure, c.environment.pressure)}};
+  if (open_time_ <= 0.0) return r;
+  r["fully_open_s"] = open_time_;
+  r["mass_flow_kg_s"] = mass_flow_ / open_time_;
+  r["mass_flow_error_percent"] = percent(mass_flow_, ideal_mass_flow_);
+  r["thrust_N"] = thrust_ / open_time_;
+  r["thrust_error_percent"] = percent(thrust_, ideal_thrust_);
+  return r;
+}
+
+MomentumRecord::MomentumRecord(const JetModel& jet) {
+  const Axis& z = jet.grid().axis(2);
+  constexpr int kPlanes = 12;
+  for (int n = 1; n <= kPlanes; ++n) {
+    const double at = z.face.front() + z.length() * n / kPlanes;
+    const int plane = n == kPlanes ? z.n : z.cell_at(at);
+    planes_.push_back(plane);
+    height_.push_back(z.face[static_cast<std::size_t>(plane)] - z.face.front());
+  }
+  momentum_.assign(planes_.size(), 0.0);
+  mass_.assign(planes_.size(), 0.0);
+}
+
+void MomentumRecord::advance(const JetModel& jet, double dt) {
+  if (jet.valve().opening(jet.time()) < kFullyOpen) return;
+  time_ += dt;
+  for (std::size_t n = 0; n < planes_.size(); ++n) {
+    const JetFlow flow = jet.through(planes_[n]);
+    momentum_[n] += flow.momentum * dt;
+    mass_[n] += flow.mass * dt;
+  }
+}
+
+nlohmann::ordered_json MomentumRecord::summary() const {
+  nlohmann::ordered_json planes = nlohmann::ordered_json::array();
+  for (std::size_t n = 0; n < planes_.size() && time_ > 0.0; ++n)
+    planes.push_back({{"height_m", height_[n]},
+                      {"momentum_N", momentum_[n] / time_},
+                      {"mass_flow_kg_s", mass_[n] / time_}});
+  return planes;
+}
+
+JetProfile::Moment profile_moment(const JetModel& jet, double height, const std::vector<double>& radii) {
+  JetProfile::Moment m{.time = jet.time(), .axial = {}, .radial = {}, .k = {}, .epsilon = {}};
+  const Vec3 lower = jet.grid().lower();
+  for (const double r : radii) {
+    const JetSample s = jet.sample({lower.x() + r, lower.y(), lower.z() + height});
+    m.axial.push_back(s.velocity.z());
+    m.radial.push_back(s.velocity.x());
+    m.k.push_back(s.k);
+    m.epsilon.push_back(s.epsilon);
+  }
+  return m;
+}
+
+}  // namespace ejecta

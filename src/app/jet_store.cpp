@@ -1,0 +1,80 @@
+#include "app/jet_store.hpp"
+
+#include <fmt/format.h>
+
+#include "app/cache.hpp"
+#include "app/jet_model.hpp"
+#include "app/jet_records.hpp"
+#include "base/error.hpp"
+#include "case/write.hpp"
+#include "output/build_info.hpp"
+#include "output/sha256.hpp"
+
+namespace ejecta {
+namespace {
+
+/// Raised whenever the numbers of a jet change for the same case.
+constexpr int kNumericsVersion = 1;
+constexpr double kProfileInterval = 50e-6;  ///< s: a twentieth of the paper's transducer's response
+
+Case without_outputs(Case c) {
+  c.run.title.clear();
+  c.path.clear();
+  c.output = {};
+  c.checkpoint = {};
+  c.probes.clear();
+  c.lines.clear();
+  c.slices.clear();
+  c.expects.clear();
+  return c;
+}
+
+std::vector<double> radii_of(const JetModel& jet) {
+  std::vector<double> radii = jet.grid().axis(0).centre;
+  for (double& r : radii) r -= jet.grid().lower().x();
+  return radii;
+}
+
+}  // namespace
+
+std::filesystem::path jet_file(const Case& jet, double height) {
+  const std::string inputs =
+      fmt::format("{}\nheight {:.9g}\nprecision {}\nnumerics {}\n", write_case(without_outputs(jet)), height,
+                  output::precision(), kNumericsVersion);
+  return cache_directory() / fmt::format("jet-{}.profile", output::sha256_hex(inputs).substr(0, 24));
+}
+
+ProfileRecorder::ProfileRecorder(const JetModel& jet, double height) : profile_(height, radii_of(jet)) {
+  profile_.add(profile_moment(jet, height, profile_.radii()));
+  next_ = kProfileInterval;
+}
+
+void ProfileRecorder::advance(const JetModel& jet) {
+  const bool last = jet.time() >= jet.scenario().run.end_time;
+  if (jet.time() < next_ && !last) return;
+  next_ = jet.time() + kProfileInterval;
+  profile_.add(profile_moment(jet, profile_.height(), profile_.radii()));
+}
+
+JetProfile stored_or_computed_jet(const Case& c, double height,
+                                  const std::function<void(const std::string&)>& note) {
+  const std::filesystem::path file = jet_file(c, height);
+  if (std::filesystem::exists(file)) {
+    try {
+      return JetProfile::read(file);
+    } catch (const Error& e) {
+      note(fmt::format("{}; it is computed again", e.what()));
+    }
+  }
+  note(fmt::format("computing the jet of {} once; it is kept in {}", c.path, file.string()));
+  JetModel jet(c);
+  ProfileRecorder recorder(jet, height);
+  while (jet.time() < c.run.end_time) {
+    jet.step();
+    recorder.advance(jet);
+  }
+  recorder.profile().write(file);
+  return recorder.profile();
+}
+
+}  // namespace ejecta
