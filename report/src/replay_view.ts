@@ -2,7 +2,7 @@ import type { Run } from "./data";
 import { h } from "./dom";
 import { fixed } from "./format";
 import { Player } from "./player";
-import { SceneView, hasWebGl } from "./scene";
+import { SceneView, hasWebGl, type View } from "./scene";
 import { SliceView } from "./slice";
 
 const STEP = 1 / 400; // of the whole time, for a press of an arrow key
@@ -83,7 +83,8 @@ export function replayView(runs: Run[], player: Player): HTMLElement | null {
       scene = new SceneView(shown, player);
       if (air) scene.select(air);
       const views = h("div", { class: "tabs", role: "group", "aria-label": "Look from" });
-      for (const view of ["jet", "flight", "side", "above"] as const) {
+      const wanted: View[] = replay.bodies.length > 0 ? ["jet", "flight", "side", "above", "follow"] : ["jet", "side", "above"];
+      for (const view of wanted) {
         const tab = h("button", { type: "button" }, view.charAt(0).toUpperCase() + view.slice(1));
         tab.addEventListener("click", () => scene!.look(view));
         views.append(tab);

@@ -16,6 +16,8 @@ export function hasWebGl(): boolean {
   return document.createElement("canvas").getContext("webgl2") !== null;
 }
 
+export type View = "jet" | "flight" | "side" | "above" | "follow";
+
 const vector = (v: Vec3): Vector3 => new Vector3(...v);
 
 function airPlane(raster: Raster, image: AirImage): { mesh: Mesh; texture: CanvasTexture } {
@@ -65,6 +67,8 @@ export class SceneView {
   private readonly domain = new Box3();
   private wanted = false;
   private placed = false;
+  private followed: Mesh | undefined;
+  private readonly lastSeen = new Vector3();
 
   constructor(
     private readonly runs: Run[],
@@ -110,6 +114,7 @@ export class SceneView {
       geometry.setIndex(new BufferAttribute(surface.triangles, 1));
       const flat = geometry.toNonIndexed();
       flat.computeVertexNormals();
+      flat.computeBoundingSphere();
       const mesh = new Mesh(flat, new MeshStandardMaterial({
         color: new Color(0xb8b2a7).lerp(new Color(colour), 0.25), roughness: 0.85,
         transparent: ghost, opacity: ghost ? 0.45 : 1,
@@ -152,19 +157,43 @@ export class SceneView {
     this.request();
   }
 
-  look(view: "jet" | "flight" | "side" | "above"): void {
+  look(view: View): void {
+    this.followed = view === "follow" ? this.bodies[0]?.mesh : undefined;
+    if (this.followed) {
+      this.moveBodies();
+      this.lastSeen.copy(this.followed.position);
+      const size = this.followed.geometry.boundingSphere?.radius ?? 0.01;
+      this.camera.position.copy(this.lastSeen).addScaledVector(new Vector3(-0.5, -1.1, 0.45), 9 * size);
+      this.controls.target.copy(this.lastSeen);
+      this.controls.update();
+      this.request();
+    } else if (view !== "follow") this.lookAtBox(view);
+  }
+
+  private lookAtBox(view: Exclude<View, "follow">): void {
     const box = view === "jet" ? this.domain : this.flight;
     const centre = box.getCenter(new Vector3());
     const size = box.getSize(new Vector3());
-    const from = { jet: [-0.75, -1.5, 0.65], flight: [-0.45, -1.2, 0.5], side: [0, -1, 0.001], above: [0, -0.02, 1] }[view];
+    const from = { jet: [-0.75, -1.5, 0.65], flight: [-0.45, -1.2, 0.5], side: [0, -1, 0.001], above: [0, -0.02, 1] }[view] as Vec3;
     // Far enough that the box fits in width and height.
     const half = Math.tan((this.camera.fov * Math.PI) / 360);
     const reach = 0.62 * Math.max(size.x / (half * this.camera.aspect), Math.hypot(size.y, size.z) / half) + 0.5 * size.y;
     this.placed = true;
-    this.camera.position.copy(centre).addScaledVector(new Vector3(...(from as Vec3)).normalize(), reach);
+    this.camera.position.copy(centre).addScaledVector(new Vector3(...from).normalize(), reach);
     this.controls.target.copy(centre);
     this.controls.update();
     this.request();
+  }
+
+  private moveBodies(): void {
+    for (const { run, body, mesh } of this.bodies) {
+      const pose = poseAt(run.replay!, body, this.player.time);
+      mesh.visible = pose !== undefined;
+      if (!pose) continue;
+      const [w, x, y, z] = pose.orientation;
+      mesh.position.set(...pose.position);
+      mesh.quaternion.set(x, y, z, w);
+    }
   }
 
   private request(): void {
@@ -184,13 +213,13 @@ export class SceneView {
     this.camera.aspect = width / height;
     this.camera.updateProjectionMatrix();
     if (!this.placed) this.look("jet");
-    for (const { run, body, mesh } of this.bodies) {
-      const pose = poseAt(run.replay!, body, this.player.time);
-      mesh.visible = pose !== undefined;
-      if (!pose) continue;
-      const [w, x, y, z] = pose.orientation;
-      mesh.position.set(...pose.position);
-      mesh.quaternion.set(x, y, z, w);
+    this.moveBodies();
+    if (this.followed) {
+      const step = this.followed.position.clone().sub(this.lastSeen);
+      this.lastSeen.add(step);
+      this.camera.position.add(step);
+      this.controls.target.add(step);
+      this.camera.updateMatrixWorld();
     }
     for (const { image, texture } of this.air) if (image.show(this.player.time)) texture.needsUpdate = true;
     this.renderer.render(this.scene, this.camera);
