@@ -68,6 +68,7 @@ PairConstants<Lanes> load_constants(const Materials& materials, const BallLanes&
     p.shear[n] = c.shear;
     p.stiffness[n] = c.stiffness;
     p.damping[n] = c.damping;
+    p.drag[n] = c.drag;
     p.friction[n] = c.friction;
     p.rolling[n] = c.rolling;
   }
@@ -126,8 +127,11 @@ void BallContacts::compute_all(const Parts& parts, const Materials& materials, d
         Contact<Lanes> c;
         c.normal = (Lanes{} + 1.0) / distance * apart;
         c.overlap = overlap;
-        c.radius = a.radius * b.radius / (a.radius + b.radius);
-        c.mass = (Lanes{} + 1.0) / (a.inverse_mass + b.inverse_mass);
+        // Divisions take longest: one for both.
+        const Lanes radii = a.radius + b.radius, masses = a.inverse_mass + b.inverse_mass;
+        const Lanes both = (Lanes{} + 1.0) / (radii * masses);
+        c.radius = a.radius * b.radius * masses * both;
+        c.mass = radii * both;
         const Lanes arm_a = a.radius - 0.5 * overlap, arm_b = b.radius - 0.5 * overlap;
         // Velocity at the contact point: arms are -arm_a n from a and +arm_b n from b.
         c.velocity = a.velocity - b.velocity - cross(arm_a * a.spin + arm_b * b.spin, c.normal);
@@ -172,19 +176,16 @@ void BallContacts::compute(const Parts& parts, const Materials& materials, doubl
 void BallContacts::index_pairs(int balls) {
   count_ = static_cast<int>(a_.size());
   const std::size_t padded = (a_.size() + kLanes - 1) / kLanes * kLanes;
-  first_own_.assign(at(balls) + 2, 0);
-  first_other_.assign(at(balls) + 2, 0);
+  first_.assign(at(balls) + 2, 0);
+  for (std::size_t n = 0; n < a_.size(); ++n)
+    for (const int ball : {a_[n], b_[n]}) ++first_[at(ball) + 1];
+  for (std::size_t n = 1; n < first_.size(); ++n) first_[n] += first_[n - 1];
+  entries_.resize(2 * a_.size());
+  cursor_.assign(first_.begin(), first_.end());
   for (std::size_t n = 0; n < a_.size(); ++n) {
-    ++first_own_[at(a_[n]) + 1];
-    ++first_other_[at(b_[n]) + 1];
+    entries_[at(cursor_[at(a_[n])]++)] = static_cast<int>(2 * n);
+    entries_[at(cursor_[at(b_[n])]++)] = static_cast<int>(2 * n + 1);
   }
-  for (std::size_t n = 1; n < first_own_.size(); ++n) {
-    first_own_[n] += first_own_[n - 1];
-    first_other_[n] += first_other_[n - 1];
-  }
-  other_.resize(a_.size());
-  std::vector<int> cursor(first_other_);
-  for (std::size_t n = 0; n < a_.size(); ++n) other_[at(cursor[at(b_[n])]++)] = static_cast<int>(n);
   a_.resize(padded, balls);
   b_.resize(padded, balls);
   rows_.assign(padded, PairRow{});

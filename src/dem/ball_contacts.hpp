@@ -49,22 +49,30 @@ class BallContacts {
   std::vector<int> a_, b_;          // padded with the ball that touches nothing
   std::vector<double> history_[6];  // slip x, y, z and roll x, y, z of each pair
   std::vector<PairRow> rows_;
-  std::vector<double> moments_[3];                    // N m, rolling resistance on a
-  std::vector<int> first_own_, first_other_, other_;  // pairs of a ball as a (a range) and as b (a list)
+  std::vector<double> moments_[3];  // N m, rolling resistance on a
+  std::vector<int> cursor_;
+  std::vector<int> first_, entries_;  // of each ball: 2 n for pair n as a, 2 n + 1 as b, in order
   bool rolling_ = false;
 };
 
 inline void BallContacts::gather(int ball, double radius, Vec4& force, Vec4& torque) const {
-  const auto add = [&](std::size_t n, double sign) {
-    const Vec4 push = *reinterpret_cast<const LooseVec4*>(&rows_[n].fx);
-    const Vec4 turning = *reinterpret_cast<const LooseVec4*>(&rows_[n].gx);
-    force += sign * push;
-    torque -= (radius - push[3]) * turning;
-    if (rolling_) torque += sign * Vec4{moments_[0][n], moments_[1][n], moments_[2][n], 0.0};
-  };
-  for (int n = first_own_[at(ball)]; n < first_own_[at(ball) + 1]; ++n) add(at(n), 1.0);
-  for (int k = first_other_[at(ball)]; k < first_other_[at(ball) + 1]; ++k) add(at(other_[at(k)]), -1.0);
-  force[3] = torque[3] = 0.0;
+  Vec4 f{}, t{};  // in registers: the rows might alias what the arguments refer to
+  for (int k = first_[at(ball)]; k < first_[at(ball) + 1]; ++k) {
+    const int entry = entries_[at(k)];
+    const double sign = 1 - 2 * (entry & 1);
+    const PairRow& row = rows_[at(entry >> 1)];
+    const Vec4 push = *reinterpret_cast<const LooseVec4*>(&row.fx);
+    const Vec4 turning = *reinterpret_cast<const LooseVec4*>(&row.gx);
+    f += sign * push;
+    t -= (radius - row.half_overlap) * turning;
+    if (rolling_) {
+      const std::size_t n = at(entry >> 1);
+      t += sign * Vec4{moments_[0][n], moments_[1][n], moments_[2][n], 0.0};
+    }
+  }
+  f[3] = t[3] = 0.0;
+  force += f;
+  torque += t;
 }
 
 }  // namespace ejecta

@@ -11,6 +11,7 @@ struct PairConstants {
   T shear{};      ///< Pa, G* = 1/((2-nu_a)/G_a + (2-nu_b)/G_b)
   T stiffness{};  ///< N/m, linear law
   T damping{};    ///< dimensionless, alpha of contact_damping.hpp
+  T drag{};       ///< sqrt(tangential / normal stiffness): tangential dashpot over normal one
   T friction{};   ///< Coulomb
   T rolling{};    ///< rolling friction: moment / (radius * normal force)
 };
@@ -39,7 +40,7 @@ struct ContactForce {
 /// Normal spring, as stiffnesses at this overlap. Force = secant * overlap.
 template <class T>
 struct NormalSpring {
-  T secant{}, tangent{}, tangential{}, energy{};  ///< N/m, N/m, N/m, J
+  T secant{}, tangential{}, energy{};  ///< N/m, N/m, J
 };
 
 /// Hertz 1882: F = 4/3 E* sqrt(R) d^1.5; Mindlin 1949: tangential stiffness 8 G* sqrt(R d). Johnson 1985,
@@ -50,7 +51,6 @@ struct HertzMindlin {
     const T a = root(c.radius * c.overlap);
     NormalSpring<T> s;
     s.secant = (4.0 / 3.0) * p.youngs * a;
-    s.tangent = 1.5 * s.secant;
     s.tangential = 8.0 * p.shear * a;
     s.energy = 0.4 * s.secant * c.overlap * c.overlap;
     return s;
@@ -69,7 +69,6 @@ struct LinearSpring {
   EJECTA_INLINE static NormalSpring<T> spring(const Contact<T>& c, const PairConstants<T>& p) {
     NormalSpring<T> s;
     s.secant = p.stiffness;
-    s.tangent = p.stiffness;
     s.tangential = (2.0 / 7.0) * p.stiffness;
     s.energy = 0.5 * p.stiffness * c.overlap * c.overlap;
     return s;
@@ -95,13 +94,15 @@ EJECTA_INLINE ContactForce<T> contact_force(const Contact<T>& c, const PairConst
 
   const Triple<T> sliding = c.velocity - approach * c.normal;
   slip = slip - dot(slip, c.normal) * c.normal + (T{} + dt) * sliding;
-  const T drag = dashpot * root(s.tangential / s.tangent);
+  const T drag = dashpot * p.drag;
   Triple<T> tangential = (T{} - s.tangential) * slip - drag * sliding;
   const T size = root(dot(tangential, tangential));
   const T limit = p.friction * larger(normal, T{});
-  const T cut = size > limit ? limit / size : T{} + 1.0;
+  // Divisions take longest: one for the cut and the slip that goes with it.
+  const T both = (T{} + 1.0) / (size * s.tangential);
+  const T cut = size > limit ? limit * s.tangential * both : T{} + 1.0;
   tangential = cut * tangential;
-  const Triple<T> cut_slip = (T{} - 1.0 / s.tangential) * tangential;
+  const Triple<T> cut_slip = (T{} - size * both) * tangential;
   slip = {size > limit ? cut_slip.x : slip.x, size > limit ? cut_slip.y : slip.y,
           size > limit ? cut_slip.z : slip.z};
 

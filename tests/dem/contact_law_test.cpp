@@ -15,7 +15,7 @@ Contact<double> contact(double overlap, const D& velocity) {
   return {{0, 0, 1}, overlap, 2e-3, 1e-4, velocity};
 }
 
-const PairConstants<double> kPair{1e7, 2e6, 1e4, 0.3, 0.4, 0.1};
+const PairConstants<double> kPair{1e7, 2e6, 1e4, 0.3, 0.9, 0.4, 0.1};
 
 /// The formula of Antypov & Elliott 2011 and, for the clamped force, independent integrations.
 TEST(Damping, HertzTableOfKnownValues) {
@@ -67,8 +67,8 @@ TEST(ContactLaw, NoTensionUnlessAllowed) {
 
 TEST(ContactLaw, LanesGiveWhatNumbersGive) {
   Contact<Lanes> wide;
-  PairConstants<Lanes> pair{Lanes{} + 1e7, Lanes{} + 2e6, Lanes{} + 1e4,
-                            Lanes{} + 0.3, Lanes{} + 0.4, Lanes{} + 0.1};
+  PairConstants<Lanes> pair{Lanes{} + 1e7, Lanes{} + 2e6, Lanes{} + 1e4, Lanes{} + 0.3,
+                            Lanes{} + 0.9, Lanes{} + 0.4, Lanes{} + 0.1};
   Triple<Lanes> slip;
   for (int n = 0; n < kLanes; ++n) {
     wide.normal.z[n] = 1;
