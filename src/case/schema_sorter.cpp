@@ -55,7 +55,7 @@ std::vector<Key> keys(JetSpec& s) {
            "Uniform exit velocity, for \"velocity-inlet\"", "", "momentum-equivalent of the choked nozzle",
            false, "\"880 m/s\""},
           {"turbulence_intensity", &s.turbulence_intensity, none, fraction, "Of a \"velocity-inlet\"",
-           "assumption"},
+           "usual for a short nozzle"},
           {.name = "source_case",
            .slot = &s.source_case,
            .help = "Case that computes the jet, for \"computed\"",

@@ -26,7 +26,8 @@ struct IncompressibleSetup {
 
 /// Seconds spent in each operator since construction.
 struct FlowTimes {
-  double boundaries = 0, momentum = 0, forcing = 0, faces = 0, pressure = 0, correction = 0, turbulence = 0;
+  double boundaries = 0, momentum = 0, forcing = 0, faces = 0, pressure = 0, correction = 0, turbulence = 0,
+         ledger = 0;
 };
 
 /// Totals of the fluid in the box, times density: kg m/s, and what crossed its boundaries, for the ledger.
@@ -81,6 +82,8 @@ class Incompressible {
   FlowLedger& ledger() { return ledger_; }
   /// False as soon as any velocity is not finite; `where` gets the first such cell.
   bool finite(Vec3* where = nullptr) const;
+  /// To be called after `state()` has been filled again: brings boundary states to `time`.
+  void resume(double time) { boundaries_.update(time); }
   /// Everything a resume needs, in a fixed order.
   std::vector<Field*> state();
 
@@ -101,6 +104,7 @@ class Incompressible {
   std::unique_ptr<TwoEquation> turbulence_;
   std::array<Field, 3> u_, u_old_, u_star_, q_, source_;
   Field p_, phi_;
+  Field solid_;                              // forcing weight of every cell during a step, else zero
   std::vector<BoundaryFlow> boundary_sums_;  // scratch
   double box_volume_ = 0, leak_ = 0;
   FlowTimes times_;

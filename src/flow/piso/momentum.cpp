@@ -42,7 +42,11 @@ struct MomentumFlux {
                  (Real(1) - f.weight) * derivative(normal + i, step, inv_span_high);
         };
         const Real span_a = m[A].inv_span[at[A]], span_b = m[B].inv_span[at[B]];
-        out_d[i] = area * (convected(normal) - Real(2) * viscosity * gradient(normal));
+        // The transposed part of the normal stress by wide differences too: it must not halve the stable
+        // step.
+        out_d[i] =
+            area * (convected(normal) - viscosity * (gradient(normal) + cross(s, m[D].inv_span[at[D] - 1],
+                                                                              m[D].inv_span[at[D]])));
         out_a[i] =
             area * (convected(across_a) - viscosity * (gradient(across_a) + cross(sa, span_a, span_a)));
         out_b[i] =

@@ -32,12 +32,23 @@ namespace k_epsilon {
 inline constexpr Real kCmu = Real(0.09), kC1 = Real(1.44), kC2 = Real(1.92), kC3 = Real(0.79);
 inline constexpr Real kSigmaK = Real(1.0), kSigmaEpsilon = Real(1.3);
 
-inline Real eddy_viscosity(Real k, Real epsilon) { return kCmu * k * k / epsilon; }
+inline Real eddy_viscosity(Real k, Real epsilon, Real longest) {
+  return kCmu * k * std::min(k / epsilon, longest);
+}
 
-/// chi = (k / epsilon)^3 W_ij W_jk S_ki; Pope's term in the epsilon equation is C3 chi epsilon^2 / k.
-inline Real pope_chi(Real k, Real epsilon, Real stretching) {
-  const Real tau = k / epsilon;
+/// chi = tau^3 W_ij W_jk S_ki, tau = k / epsilon; Pope's term in the epsilon equation is C3 chi epsilon^2 /
+/// k. `longest` bounds tau where turbulence is far from equilibrium (see longest_time).
+inline Real pope_chi(Real k, Real epsilon, Real stretching, Real longest) {
+  const Real tau = std::min(k / epsilon, longest);
   return tau * tau * tau * stretching;
+}
+
+/// The largest turbulent time scale whose eddy viscosity C_mu k tau leaves every normal stress positive,
+/// tau <= 1 / (sqrt(3) C_mu sqrt(2 S_ij S_ij)) (Durbin 1996, with his factor at its bound): cures the false
+/// turbulence at stagnation points; in a shear layer in equilibrium it is twice the model's own time and does
+/// nothing.
+inline Real longest_time(Real strain) {
+  return Real(1) / (Real(1.7320508) * kCmu * std::max(strain, Real(1e-12)));
 }
 }  // namespace k_epsilon
 

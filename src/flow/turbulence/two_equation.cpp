@@ -100,16 +100,26 @@ struct ScalarFlux {
   }
 };
 
+/// Where a transport step writes.
+struct ScalarOut {
+  FieldView k, second, nut, f1;
+};
+
 template <bool kSst, bool kRound>
 void transport(const Grid& grid, const ScalarFlux<kSst>& face, const std::array<ConstFieldView, 3>& u,
-               FieldView k_new, FieldView second_new) {
+               const TwoEquation::WallDistance& wall, const ScalarOut& out) {
+  const Real most = kLargestViscosityRatio * face.nu;
   sweep<2>(grid, face, [&](int j, int k, Real* const(&balance)[2]) {
     const Real *b0 = balance[0], *b1 = balance[1], *inv_volume = face.m[0].inv_volume;
     const Real dt = face.dt, inv_jk = face.m[1].inv_volume[j] * face.m[2].inv_volume[k];
     const Real *old_k = face.value[0].row(j, k), *old_second = face.value[1].row(j, k),
                *eddy = face.nut.row(j, k);
     const Real* blending = kSst ? face.f1.row(j, k) : nullptr;
-    Real *out_k = k_new.row(j, k), *out_second = second_new.row(j, k);
+    Real *out_k = out.k.row(j, k), *out_second = out.second.row(j, k), *out_nut = out.nut.row(j, k);
+    Real* out_f1 = kSst ? out.f1.row(j, k) : nullptr;
+    const Real nu = face.nu, *distance_x = wall[0].data();
+    const Real distance_jk =
+        std::min(wall[1][static_cast<std::size_t>(j)], wall[2][static_cast<std::size_t>(k)]);
     const GradientRow gradient = gradient_row(grid, u, j, k);
     const ProductRow product = product_row(grid, face.value[0], face.value[1], j, k);
     const int nx = grid.nx();
@@ -134,18 +144,31 @@ void transport(const Grid& grid, const ScalarFlux<kSst>& face, const std::array<
           s1 = (s_carried + dt * gain) / (Real(1) + dt * (beta * s0 + std::max(-cross, Real(0)) / s0));
         } else {
           using namespace k_epsilon;
+          const Real longest = longest_time(std::sqrt(strain2));
           const Real rate = s0 / k0, produced = nut * strain2;
           Real gain = kC1 * produced, loss = kC2;
           if constexpr (kRound) {
-            const Real pope = kC3 * pope_chi(k0, s0, vortex_stretching(v));
+            const Real pope = kC3 * pope_chi(k0, s0, vortex_stretching(v), longest);
             gain += std::max(pope, Real(0)) * s0;
             loss += std::max(-pope, Real(0));
           }
           k1 = (k_carried + dt * produced) / (Real(1) + dt * rate);
           s1 = (s_carried + dt * rate * gain) / (Real(1) + dt * loss * rate);
         }
-        out_k[i] = std::max(k1, kMinimalK);
-        out_second[i] = std::max(s1, kMinimalSecond);
+        k1 = std::max(k1, kMinimalK);
+        s1 = std::max(s1, kMinimalSecond);
+        out_k[i] = k1;
+        out_second[i] = s1;
+        const Real rate_of_strain = std::sqrt(strain2);
+        if constexpr (kSst) {
+          using namespace k_omega_sst;
+          const Real d = std::min(distance_x[i], distance_jk);
+          out_f1[i] = k_omega_sst::f1(k1, s1, nu, d, cross_diffusion(s0, product(i)));
+          out_nut[i] = std::min(eddy_viscosity(k1, s1, rate_of_strain, f2(k1, s1, nu, d)), most);
+        } else {
+          out_nut[i] =
+              std::min(k_epsilon::eddy_viscosity(k1, s1, k_epsilon::longest_time(rate_of_strain)), most);
+        }
       });
     };
     grid.axisymmetric() ? update(std::true_type{}) : update(std::false_type{});
@@ -165,7 +188,9 @@ TwoEquation::TwoEquation(const Grid& grid, TwoEquationModel model, bool round_je
       nut_(grid.make_field()),
       f1_(grid.make_field()),
       k_new_(grid.make_field()),
-      second_new_(grid.make_field()) {
+      second_new_(grid.make_field()),
+      nut_new_(grid.make_field()),
+      f1_new_(grid.make_field()) {
   initialise(kMinimalK, kMinimalSecond);
 }
 
@@ -193,48 +218,6 @@ void TwoEquation::measure_walls(const Boundaries& b) {
       }
     }
   }
-}
-
-template <class Kernel>
-void TwoEquation::for_each_row(const Kernel& kernel) const {
-  for_each_index(grid_.nz(), [&](int k) {
-    for (int j = 0; j < grid_.ny(); ++j) kernel(j, k);
-  });
-}
-
-void TwoEquation::update_eddy_viscosity(const Boundaries& b, const std::array<ConstFieldView, 3>& u,
-                                        const std::array<FieldView, 3>& q, const SolidMask& solids) {
-  if (wall_distance_[0].empty()) measure_walls(b);
-  b.fill_turbulence(k_.view(), second_.view(), q);
-  const FieldView nut = nut_.view();
-  const int nx = grid_.nx();
-  const Real nu = nu_;
-  for_each_row([&, this](int j, int l) {
-    const Real *k = k_.view().row(j, l), *second = second_.view().row(j, l);
-    Real *out = nut_.view().row(j, l), *blending = f1_.view().row(j, l);
-    if (model_ == TwoEquationModel::k_epsilon) {
-      for_each_lane(0, nx, [=](int i) { out[i] = k_epsilon::eddy_viscosity(k[i], second[i]); });
-      return;
-    }
-    const GradientRow gradient = gradient_row(grid_, u, j, l);
-    const ProductRow product = product_row(grid_, k_.view(), second_.view(), j, l);
-    const Real* distance_x = wall_distance_[0].data();
-    const Real distance_jl = std::min(wall_distance_[1][static_cast<std::size_t>(j)],
-                                      wall_distance_[2][static_cast<std::size_t>(l)]);
-    for_each_lane(0, nx, [=](int i) {
-      const Real d = std::min(distance_x[i], distance_jl), w = second[i];
-      blending[i] = k_omega_sst::f1(k[i], w, nu, d, k_omega_sst::cross_diffusion(w, product(i)));
-      const Real strain = std::sqrt(strain_squared(gradient(i)));
-      out[i] = k_omega_sst::eddy_viscosity(k[i], w, strain, k_omega_sst::f2(k[i], w, nu, d));
-    });
-  });
-  if (model_ == TwoEquationModel::k_omega_sst) b.fill_zero_gradient(f1_.view());
-  for_each_index(static_cast<int>(solids.cells.size()), [&](int n) {
-    const SolidCell& c = solids.cells[static_cast<std::size_t>(n)];
-    nut(c.i, c.j, c.k) *= Real(1) - c.weight;
-  });
-  b.fill_zero_gradient(nut);
-  apply_walls();
 }
 
 /// Equilibrium values in the cells next to walls and the wall's eddy viscosity in the ghosts (Launder &
@@ -271,8 +254,10 @@ void TwoEquation::apply_walls() {
 
 void TwoEquation::advance(const Boundaries& b, const std::array<ConstFieldView, 3>& u,
                           const std::array<FieldView, 3>& q, const SolidMask& solids, Real dt) {
+  if (wall_distance_[0].empty()) measure_walls(b);
   b.fill_turbulence(k_.view(), second_.view(), q);
   const std::array<ConstFieldView, 3> faces{q[0], q[1], q[2]};
+  const ScalarOut out{k_new_.view(), second_new_.view(), nut_new_.view(), f1_new_.view()};
   const auto run = [&](auto sst, auto round) {
     const ScalarFlux<sst> face{{k_.view(), second_.view()},
                                nut_.view(),
@@ -281,18 +266,23 @@ void TwoEquation::advance(const Boundaries& b, const std::array<ConstFieldView, 
                                {grid_.metrics(0), grid_.metrics(1), grid_.metrics(2)},
                                nu_,
                                dt};
-    transport<sst, round>(grid_, face, u, k_new_.view(), second_new_.view());
+    transport<sst, round>(grid_, face, u, wall_distance_, out);
   };
   if (model_ == TwoEquationModel::k_omega_sst) run(std::true_type{}, std::false_type{});
   else if (round_jet_) run(std::false_type{}, std::true_type{});
   else run(std::false_type{}, std::false_type{});
   std::swap(k_, k_new_);
   std::swap(second_, second_new_);
-  for_each_index(static_cast<int>(solids.cells.size()), [&](int n) {  // no turbulence inside a solid
+  std::swap(nut_, nut_new_);
+  std::swap(f1_, f1_new_);
+  const FieldView nut = nut_.view();
+  for_each_index(static_cast<int>(solids.cells.size()), [&](int n) {  // no eddies inside a solid
     const SolidCell& c = solids.cells[static_cast<std::size_t>(n)];
-    k_(c.i, c.j, c.k) += c.weight * (kMinimalK - k_(c.i, c.j, c.k));
+    nut(c.i, c.j, c.k) *= Real(1) - c.weight;
   });
-  update_eddy_viscosity(b, u, q, solids);
+  b.fill_zero_gradient(nut);
+  if (model_ == TwoEquationModel::k_omega_sst) b.fill_zero_gradient(f1_.view());
+  apply_walls();
 }
 
 }  // namespace ejecta

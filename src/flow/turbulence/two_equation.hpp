@@ -18,9 +18,9 @@ class TwoEquation {
 
   void initialise(double k, double second);
   void set_at(int i, int j, int k_index, double k, double second);
-  /// Sets nu_t from k and the second variable; u has filled ghosts.
-  void update_eddy_viscosity(const Boundaries& b, const std::array<ConstFieldView, 3>& u,
-                             const std::array<FieldView, 3>& q, const SolidMask& solids);
+  using WallDistance = std::array<std::vector<Real>, 3>;
+
+  /// One step; u and q are the velocities at its end, with filled ghosts. dt = 0 only sets nu_t.
   void advance(const Boundaries& b, const std::array<ConstFieldView, 3>& u, const std::array<FieldView, 3>& q,
                const SolidMask& solids, Real dt);
 
@@ -33,17 +33,19 @@ class TwoEquation {
  private:
   void apply_walls();
   void measure_walls(const Boundaries& b);
-  template <class Kernel>
-  void for_each_row(const Kernel& kernel) const;
 
   const Grid& grid_;
   TwoEquationModel model_;
   bool round_jet_;
   Real nu_;
-  Field k_, second_, nut_, f1_, k_new_, second_new_;
+  Field k_, second_, nut_, f1_, k_new_, second_new_, nut_new_, f1_new_;
   std::array<bool, 6> is_wall_{};
-  std::array<std::vector<Real>, 3> wall_distance_;  // to the nearest wall normal to each axis, m
+  WallDistance wall_distance_;  // to the nearest wall normal to each axis, m
 };
+
+/// nu_t / nu is limited to this (a jet of a sorter has about 1500), so that the ambient's arbitrary epsilon
+/// cannot set the time step.
+inline constexpr Real kLargestViscosityRatio = Real(1e4);
 
 /// Floors that keep still air still: far below any turbulence that matters.
 inline constexpr Real kMinimalK = Real(1e-8), kMinimalSecond = Real(1e-8);

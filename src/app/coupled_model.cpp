@@ -1,0 +1,265 @@
+#include "app/coupled_model.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "app/jet_source.hpp"
+#include "base/error.hpp"
+#include "base/stopwatch.hpp"
+#include "sorter/launch.hpp"
+
+namespace ejecta {
+namespace {
+
+/// A case without a fluid has no grid; one cell stands for it.
+Grid grid_of(const Case& c) {
+  if (c.flow.solver != FlowSolver::none) return make_grid(c);
+  const Axis one = make_axis({0.0, 1.0}, {1}, {});
+  return Grid(one, one, one);
+}
+
+/// Longest step without air, s: positions in histories and reports stay smooth.
+constexpr double kFlightStep = 1e-4;
+/// Share of its greatest kinetic energy below which the air counts as dead once the valve is closed.
+constexpr double kDeadAir = 1e-3;
+
+}  // namespace
+
+CoupledModel::CoupledModel(const Case& c)
+    : case_(c), grid_(grid_of(c)), flow_(make_flow_model(c, grid_)), particles_(make_particles(c)) {
+  air_ = flow_ != nullptr;
+  place_bodies();
+  const std::size_t n = particles_.bodies().size();
+  loads_.resize(n);
+  impulse_.assign(n, Vec3::Zero());
+  force_sum_.assign(n, Vec3::Zero());
+  torque_sum_.assign(n, Vec3::Zero());
+  before_.resize(n);
+  if (flow_ && n > 0) coupling_.emplace(grid_, flow_->density(), c.environment.gravity);
+  if (const auto jet = flow_ ? make_jet_source(c) : nullptr) dead_from_ = jet->dead_from();
+  check_bodies();
+  build_step();
+}
+
+void CoupledModel::place_bodies() {
+  const Vec3 nozzle = case_.jet.nozzle, gravity = case_.environment.gravity;
+  for (std::size_t b = 0; b < case_.bodies.size(); ++b) {
+    const Body& body = particles_.bodies()[b];
+    if (case_.launch.enabled && case_.bodies[b].on_belt) {
+      const FlightState s = launch_state(case_.launch, nozzle, gravity, 0.0);
+      particles_.place(static_cast<int>(b), s.position, body.orientation, s.velocity, body.angular_velocity);
+    }
+    start_velocity_.push_back(body.velocity);
+    std::vector<Vec3> path;
+    const double reach = case_.splitter.enabled ? nozzle.x() + case_.splitter.distance + case_.splitter.length
+                                                : body.position.x();
+    const double flight = body.velocity.x() > 0.0 ? (reach - body.position.x()) / body.velocity.x() : 0.0;
+    for (int p = 0; flight > 0.0 && p <= 60; ++p) {
+      const double t = flight * p / 60.0;
+      path.push_back(body.position + t * body.velocity + 0.5 * t * t * gravity);
+    }
+    undisturbed_.push_back(path);
+  }
+  if (!case_.splitter.enabled || particles_.bodies().empty()) return;
+  const double edge_x = nozzle.x() + case_.splitter.distance;
+  double height;
+  if (case_.launch.enabled) {
+    height = launch_height_at(case_.launch, nozzle, gravity, edge_x);
+  } else {
+    const Body& first = particles_.bodies()[0];
+    if (!(first.velocity.x() > 0.0))
+      throw InputError(fmt::format("splitter: body \"{}\" must fly towards +x to reach it", first.name));
+    const double t = (edge_x - first.position.x()) / first.velocity.x();
+    height = first.position.z() + t * first.velocity.z() + 0.5 * t * t * gravity.z();
+  }
+  splitter_.emplace(case_.splitter, nozzle, height);
+  splitter_->resize(particles_.bodies().size());
+}
+
+void CoupledModel::check_bodies() const {
+  if (!flow_) return;
+  for (const Body& body : particles_.bodies()) {
+    const double size = 2.0 * body.shape.bounding_radius();
+    for (int d = 0; d < 3; ++d)
+      if (grid_.active(d) && size > grid_.axis(d).length())
+        throw InputError(
+            fmt::format("body \"{}\" ({:.3g} mm across) is larger than the box in {} ({:.3g} mm)", body.name,
+                        size * 1e3, "xyz"[d], grid_.axis(d).length() * 1e3));
+    double finest = 0.0;
+    for (int d = 0; d < 3; ++d)
+      if (grid_.active(d)) finest = std::max(finest, grid_.axis(d).smallest());
+    const double across = body.shape.smallest_feature() / finest;
+    if (across < 4.0)
+      throw InputError(
+          fmt::format("body \"{}\": {:.1f} cells across its smallest feature ({:.3g} mm) even where the grid "
+                      "is finest ({:.3g} mm); at least 4 are needed, 8 recommended",
+                      body.name, across, body.shape.smallest_feature() * 1e3, finest * 1e3));
+  }
+}
+
+void CoupledModel::build_step() {
+  if (coupling_)
+    step_.push_back(
+        {"map.bodies", "cells with signed distance < 0 move with their body", [this](double, double) {
+           if (air_) coupling_->map(particles_.bodies(), mask_);
+         }});
+  if (flow_)
+    step_.push_back({"flow.advance", "PISO: predictor, forced and projected twice (see flow.* below)",
+                     [this](double time, double dt) {
+                       if (!air_) return;
+                       flow_->advance(time, dt, mask_);
+                       ++flow_steps_;
+                     }});
+  if (coupling_)
+    step_.push_back({"loads.collect", "F = -rho sum(impulse)/dt + rho V a - rho V g, T = sum r x F",
+                     [this](double time, double dt) {
+                       if (!air_) {
+                         std::fill(loads_.begin(), loads_.end(), Load{});
+                         return;
+                       }
+                       coupling_->collect(particles_.bodies(), mask_, dt, loads_);
+                       for (std::size_t b = 0; b < loads_.size(); ++b) impulse_[b] += dt * loads_[b].force;
+                       if (time < case_.stream.average_from) return;
+                       averaged_ += dt;
+                       for (std::size_t b = 0; b < loads_.size(); ++b) {
+                         force_sum_[b] += dt * loads_[b].force;
+                         torque_sum_[b] += dt * loads_[b].torque;
+                       }
+                     }});
+  if (!case_.bodies.empty())
+    step_.push_back({"bodies.advance",
+                     "m dV/dt = F_contact + m g + F_fluid (Eq. 4), I dw/dt + w x I w = T (Eq. 5)",
+                     [this](double, double dt) {
+                       for (std::size_t b = 0; b < before_.size(); ++b)
+                         before_[b] = particles_.bodies()[b].position;
+                       particles_.advance(dt, loads_);
+                     }});
+  if (splitter_)
+    step_.push_back(
+        {"splitter.watch", "ejected when the centre passes above the edge",
+         [this](double time, double dt) { splitter_->watch(particles_.bodies(), before_, time + dt, dt); }});
+}
+
+double CoupledModel::stable_dt(double time) const {
+  double dt = case_.run.time_step_max;
+  if (case_.run.time_step) dt = *case_.run.time_step;
+  if (flow_ && air_) {
+    if (!case_.run.time_step) dt = std::min(dt, flow_->stable_dt(time));
+    if (coupling_ && !case_.run.time_step) {
+      // A body must not cross a cell in one step.
+      double rate = 0.0;
+      for (const Body& b : particles_.bodies())
+        for (int d = 0; d < 3; ++d) {
+          const double speed =
+              std::abs(b.velocity[d]) + b.angular_velocity.norm() * b.shape.bounding_radius();
+          if (grid_.active(d)) rate = std::max(rate, speed / grid_.axis(d).smallest());
+        }
+      if (rate > 0.0) dt = std::min(dt, 0.5 * case_.run.courant / rate);
+    }
+  } else if (!case_.run.time_step) {
+    dt = std::min(dt, kFlightStep);
+  }
+  return dt;
+}
+
+void CoupledModel::advance(double time, double dt) {
+  if (flow_ && air_) {
+    courant_ = flow_->courant(dt);
+    max_courant_ = std::max(max_courant_, courant_);
+  }
+  for (Operator& op : step_) {
+    ScopedTimer timer(op.seconds);
+    op.run(time, dt);
+    ++op.calls;
+  }
+  watch_air(time + dt);
+}
+
+void CoupledModel::watch_air(double time) {
+  if (!air_ || case_.run.until != RunUntil::verdict || !coupling_) return;
+  if (flow_steps_ % 50 == 0) {
+    const double energy = flow_->kinetic_energy();
+    peak_energy_ = std::max(peak_energy_, energy);
+    if (time > dead_from_ && energy < kDeadAir * peak_energy_) air_ = false;
+  }
+  if (time > dead_from_ && !coupling_->any_inside(particles_.bodies())) air_ = false;
+}
+
+bool CoupledModel::finished() const {
+  if (case_.run.until == RunUntil::verdict) return splitter_ && splitter_->all_passed();
+  if (case_.run.until != RunUntil::rest) return false;
+  const auto bodies = particles_.bodies();
+  return std::all_of(bodies.begin(), bodies.end(), [](const Body& b) {
+    return b.velocity.norm() + b.angular_velocity.norm() * b.shape.bounding_radius() < 1e-4;
+  });
+}
+
+Vec3 CoupledModel::mean_force(std::size_t b) const {
+  return averaged_ > 0.0 ? Vec3(force_sum_[b] / averaged_) : loads_[b].force;
+}
+
+Vec3 CoupledModel::mean_torque(std::size_t b) const {
+  return averaged_ > 0.0 ? Vec3(torque_sum_[b] / averaged_) : loads_[b].torque;
+}
+
+std::vector<double> CoupledModel::events() const { return flow_ ? flow_->events() : std::vector<double>{}; }
+
+void CoupledModel::require_finite(double time) const {
+  Vec3 where{0, 0, 0};
+  if (!flow_ || !air_ || flow_->finite(&where)) return;
+  throw DivergedError(
+      fmt::format("the flow diverged at t = {:.6g} s near x, y, z = {:.4g}, {:.4g}, {:.4g} mm (Courant "
+                  "number {:.2f}); try a smaller "
+                  "run.courant, a smoother grid there, or a longer valve.rise_time",
+                  time, where.x() * 1e3, where.y() * 1e3, where.z() * 1e3, courant_));
+}
+
+std::vector<output::OperatorTime> CoupledModel::operator_times() const {
+  std::vector<output::OperatorTime> all;
+  for (const Operator& op : step_) {
+    if (op.name != "flow.advance") {
+      all.push_back({op.name, op.equation, op.seconds, op.calls});
+      continue;
+    }
+    for (output::OperatorTime part : flow_->operators()) {
+      part.calls = flow_steps_;
+      all.push_back(part);
+    }
+  }
+  return all;
+}
+
+std::vector<std::vector<double>> CoupledModel::state_numbers() const {
+  std::vector<double> own{averaged_, max_courant_, peak_energy_, double(flow_steps_), double(air_)};
+  for (const auto* list : {&impulse_, &start_velocity_, &force_sum_, &torque_sum_})
+    for (const Vec3& v : *list) own.insert(own.end(), {v.x(), v.y(), v.z()});
+  for (const Load& l : loads_)
+    own.insert(own.end(), {l.force.x(), l.force.y(), l.force.z(), l.torque.x(), l.torque.y(), l.torque.z()});
+  return {own, particles_.state(), flow_ ? flow_->state_numbers() : std::vector<double>{},
+          coupling_ ? coupling_->state() : std::vector<double>{},
+          splitter_ ? splitter_->state() : std::vector<double>{}};
+}
+
+void CoupledModel::restore_numbers(const std::vector<std::vector<double>>& numbers, double time) {
+  const std::vector<double>& own = numbers.at(0);
+  averaged_ = own.at(0), max_courant_ = own.at(1), peak_energy_ = own.at(2);
+  flow_steps_ = static_cast<std::int64_t>(own.at(3));
+  air_ = own.at(4) != 0.0;
+  std::size_t at = 5;
+  const auto next = [&] {
+    const Vec3 v(own.at(at), own.at(at + 1), own.at(at + 2));
+    at += 3;
+    return v;
+  };
+  for (auto* list : {&impulse_, &start_velocity_, &force_sum_, &torque_sum_})
+    for (Vec3& v : *list) v = next();
+  for (Load& l : loads_) l.force = next(), l.torque = next();
+  particles_.restore(numbers.at(1));
+  if (flow_) flow_->restore_numbers(numbers.at(2), time);
+  if (coupling_) coupling_->restore(numbers.at(3));
+  if (splitter_) splitter_->restore(numbers.at(4));
+}
+
+}  // namespace ejecta

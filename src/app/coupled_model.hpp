@@ -1,0 +1,84 @@
+#pragma once
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/flow_model.hpp"
+#include "case/case.hpp"
+#include "coupling/resolved/resolved.hpp"
+#include "dem/particles.hpp"
+#include "sorter/splitter.hpp"
+
+namespace ejecta {
+
+/// One entry of a step: what it does, its equation, what it cost.
+struct Operator {
+  std::string name, equation;
+  std::function<void(double time, double dt)> run;
+  double seconds = 0.0;
+  std::int64_t calls = 0;
+};
+
+/// A whole case: fluid, bodies, their coupling, the splitter. `step` is the time step; ejecta plan prints it.
+class CoupledModel {
+ public:
+  explicit CoupledModel(const Case& c);
+
+  double stable_dt(double time) const;
+  void advance(double time, double dt);
+  std::vector<Operator>& step() { return step_; }
+  std::vector<output::OperatorTime> operator_times() const;
+
+  const Case& config() const { return case_; }
+  const Grid& grid() const { return grid_; }
+  FlowModel* flow() const { return flow_.get(); }
+  const Particles& particles() const { return particles_; }
+  const std::vector<Load>& loads() const { return loads_; }
+  const std::optional<Splitter>& splitter() const { return splitter_; }
+  const std::vector<Vec3>& impulse() const { return impulse_; }  ///< N s of the fluid on each body
+  const std::vector<Vec3>& start_velocity() const { return start_velocity_; }
+  const std::vector<std::vector<Vec3>>& undisturbed() const { return undisturbed_; }
+  /// Mean force over the time since stream.average_from, N.
+  Vec3 mean_force(std::size_t body) const;
+  Vec3 mean_torque(std::size_t body) const;
+  std::int64_t flow_steps() const { return flow_steps_; }
+  double max_courant() const { return max_courant_; }
+  double courant() const { return courant_; }
+  /// The air is still being computed.
+  bool air() const { return air_; }
+  /// The case's own end ("verdict", "rest") has come.
+  bool finished() const;
+  std::vector<double> events() const;
+  /// Throws DivergedError with the place when the flow is no longer finite.
+  void require_finite(double time) const;
+
+  std::vector<Field*> state_fields() { return flow_ ? flow_->state_fields() : std::vector<Field*>{}; }
+  std::vector<std::vector<double>> state_numbers() const;
+  void restore_numbers(const std::vector<std::vector<double>>& numbers, double time);
+
+ private:
+  void place_bodies();
+  void check_bodies() const;
+  void build_step();
+  void watch_air(double time);
+
+  const Case& case_;
+  Grid grid_;
+  std::unique_ptr<FlowModel> flow_;
+  Particles particles_;
+  std::optional<ResolvedCoupling> coupling_;
+  SolidMask mask_;
+  std::optional<Splitter> splitter_;
+  std::vector<Operator> step_;
+  std::vector<Load> loads_;
+  std::vector<Vec3> impulse_, start_velocity_, before_, force_sum_, torque_sum_;
+  std::vector<std::vector<Vec3>> undisturbed_;
+  double averaged_ = 0.0, max_courant_ = 0.0, courant_ = 0.0, peak_energy_ = 0.0;
+  std::int64_t flow_steps_ = 0;
+  double dead_from_ = 1e300;
+  bool air_ = true, resting_ = false;
+};
+
+}  // namespace ejecta

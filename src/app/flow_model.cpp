@@ -1,0 +1,28 @@
+#include "app/flow_model.hpp"
+
+#include "app/incompressible_model.hpp"
+#include "base/error.hpp"
+
+namespace ejecta {
+
+Grid make_grid(const Case& c) {
+  std::array<Axis, 3> axis;
+  for (std::size_t d = 0; d < 3; ++d) {
+    const AxisSpec& a = c.grid.axis[d];
+    axis[d] = make_axis(a.points, a.cells, a.grading);
+  }
+  return Grid(axis[0], axis[1], axis[2], c.grid.geometry == Geometry::axisymmetric);
+}
+
+std::unique_ptr<FlowModel> make_flow_model(const Case& c, const Grid& grid) {
+  switch (c.flow.solver) {
+    case FlowSolver::none:
+      return nullptr;
+    case FlowSolver::incompressible:
+      return make_incompressible_model(c, grid);
+    default:
+      throw InputError("this flow.solver cannot run in a box yet: use \"incompressible\" or `ejecta jet`");
+  }
+}
+
+}  // namespace ejecta

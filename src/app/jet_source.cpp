@@ -1,0 +1,88 @@
+#include "app/jet_source.hpp"
+
+#include <algorithm>
+#include <filesystem>
+
+#include "base/error.hpp"
+#include "flow/gas.hpp"
+#include "sorter/nozzle.hpp"
+
+namespace ejecta {
+namespace {
+
+/// Quasi-steady: what the orifice gives at the valve's opening of the moment.
+class ValveJet : public JetSource {
+ public:
+  explicit ValveJet(const Case& c)
+      : jet_(c.jet),
+        spec_(c.valve),
+        gas_{c.fluid.gamma, c.fluid.gas_constant},
+        density_(c.fluid.density),
+        ambient_(c.environment.pressure),
+        temperature_(c.valve.supply_temperature > 0.0 ? c.valve.supply_temperature
+                                                      : c.environment.temperature),
+        valve_(c.valve, std::filesystem::path(c.path).parent_path().string()),
+        far_(c.jet, c.valve, 1.0),
+        near_(c.jet, c.valve) {
+    valve_.require_jet(ambient_);
+  }
+
+  JetState at(const Vec3& x, double half_x, double half_y, double time) const override {
+    const double u = velocity(time);
+    if (jet_.kind == JetKind::self_similar) return far_.at(x, u);
+    const double share = near_.share(x, half_x, half_y);
+    return share > 0.0 ? near_.at(share, u) : JetState{};
+  }
+  double fastest(double time, double z) const override {
+    const double u = velocity(time);
+    if (jet_.kind != JetKind::self_similar) return u;
+    return far_.at(Vec3(jet_.nozzle.x(), jet_.nozzle.y(), z), u).velocity.z();
+  }
+  std::vector<double> events() const override { return valve_.events(); }
+  double dead_from() const override { return valve_.closed_from(); }
+  double thrust(double time) const override {
+    if (jet_.inlet_velocity > 0.0)
+      return density_ * nozzle_area(spec_.orifice_diameter) * std::pow(velocity(time), 2);
+    return nozzle_thrust(exit(time), spec_.discharge_coefficient, spec_.orifice_diameter);
+  }
+
+ private:
+  NozzleExit exit(double time) const {
+    return nozzle_exit(gas_, valve_.total_pressure(time, ambient_), temperature_, ambient_);
+  }
+  /// Momentum-equivalent velocity, or the one the case gives, opened like the momentum of the valve.
+  double velocity(double time) const {
+    if (jet_.inlet_velocity > 0.0) {
+      const double full = nozzle_exit(gas_, spec_.supply_pressure, temperature_, ambient_).thrust_per_area;
+      return jet_.inlet_velocity * std::sqrt(exit(time).thrust_per_area / full);
+    }
+    return nozzle_equivalent_velocity(exit(time), spec_.discharge_coefficient, density_);
+  }
+
+  JetSpec jet_;
+  ValveSpec spec_;
+  Gas gas_;
+  double density_, ambient_, temperature_;
+  Valve valve_;
+  SelfSimilarJet far_;
+  NozzleInflow near_;
+};
+
+}  // namespace
+
+bool has_jet(const Case& c) {
+  return std::any_of(c.boundary.begin(), c.boundary.end(), [](const BoundarySpec& b) {
+    return b.type == BoundaryType::jet ||
+           std::any_of(b.patches.begin(), b.patches.end(),
+                       [](const PatchSpec& p) { return p.type == BoundaryType::jet; });
+  });
+}
+
+std::unique_ptr<JetSource> make_jet_source(const Case& c) {
+  if (!has_jet(c)) return nullptr;
+  if (c.jet.kind == JetKind::computed)
+    throw InputError("jet.kind = \"computed\" needs a stored jet: run `ejecta jet` on jet.source_case first");
+  return std::make_unique<ValveJet>(c);
+}
+
+}  // namespace ejecta

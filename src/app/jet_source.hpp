@@ -1,0 +1,31 @@
+#pragma once
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "case/case.hpp"
+#include "grid/grid.hpp"
+#include "sorter/jet_inflow.hpp"
+
+namespace ejecta {
+
+/// The jet of a case as a boundary state over position and time, whatever it comes from.
+class JetSource {
+ public:
+  virtual ~JetSource() = default;
+  /// At a cell of the lower z-face; half widths of the cell, m.
+  virtual JetState at(const Vec3& position, double half_x, double half_y, double time) const = 0;
+  /// Highest axial velocity at `time`, m/s: for the choice of the time step.
+  virtual double fastest(double time, double z) const = 0;
+  virtual std::vector<double> events() const = 0;
+  virtual double dead_from() const = 0;  ///< s: no more air enters
+  /// Thrust of the valve at `time`, N: what the jet's momentum is compared with.
+  virtual double thrust(double time) const = 0;
+};
+
+std::unique_ptr<JetSource> make_jet_source(const Case& c);
+
+/// True when a boundary or patch of the case is a jet.
+bool has_jet(const Case& c);
+
+}  // namespace ejecta

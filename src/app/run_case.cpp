@@ -1,0 +1,216 @@
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <iostream>
+#include <memory>
+
+#include "app/coupled_model.hpp"
+#include "app/exit_code.hpp"
+#include "app/run_outputs.hpp"
+#include "app/run_result.hpp"
+#include "app/signals.hpp"
+#include "app/simulation.hpp"
+#include "base/clock.hpp"
+#include "base/error.hpp"
+#include "base/parallel.hpp"
+#include "base/stopwatch.hpp"
+#include "case/write.hpp"
+#include "output/progress.hpp"
+#include "output/report.hpp"
+#include "output/verdict.hpp"
+
+namespace ejecta {
+namespace {
+
+/// How often a run looks for NaN, in steps.
+constexpr int kCheckInterval = 20;
+
+/// One run: the clock, the model, its observers.
+class Run {
+ public:
+  Run(const Case& c, const RunOptions& options)
+      : case_(c),
+        options_(options),
+        path_(options.out.empty() ? output::RunDirectory::default_path(c.path)
+                                  : std::filesystem::path(options.out)),
+        directory_(options.resume ? output::RunDirectory::open(path_)
+                                  : output::RunDirectory::create(path_, options.force)),
+        model_(c),
+        store_(directory_.checkpoints()),
+        progress_(std::cerr, progress_options()) {
+    provenance_ = {.command = "ejecta run " + c.path,
+                   .case_path = c.path,
+                   .input = write_case(c),
+                   .threads = thread_count()};
+    std::optional<double> resumed;
+    if (options.resume) resumed = find_checkpoint();
+    if (!options.resume) {
+      directory_.write_case(provenance_.input);
+      directory_.write_manifest(output::make_manifest(provenance_));
+    }
+    outputs_ =
+        std::make_unique<RunOutputs>(c, model_, directory_, output::provenance_lines(provenance_), resumed);
+    for (double t : model_.events()) clock_.add_event(t);
+    clock_.add_event(c.run.end_time);
+    outputs_->add_events(clock_, c.run.end_time);
+    clock_.add_events_every(c.checkpoint.every_time, 0.0, c.run.end_time);
+    if (resumed) restore();
+  }
+
+  int advance_to_end() {
+    SignalWatch signals;
+    const double start = wall_seconds() - wall_before_;
+    double last_checkpoint = wall_seconds();
+    if (clock_.step() == 0) outputs_->observe(0.0, 0);
+    while (!finished()) {
+      const double dt = clock_.land_on_events(model_.stable_dt(clock_.time()));
+      model_.advance(clock_.time(), dt);
+      clock_.tick(dt);
+      if (clock_.step() % kCheckInterval == 0) model_.require_finite(clock_.time());
+      outputs_->observe(clock_.time(), clock_.step());
+      progress_.update(progress_state(dt));
+      wall_ = wall_seconds() - start;
+      const bool stop = signals.stop_requested();
+      if (stop || signals.take_checkpoint_request() || checkpoint_due(last_checkpoint)) {
+        write_checkpoint();
+        last_checkpoint = wall_seconds();
+      }
+      if (stop) {
+        progress_.finish(progress_state(dt), "stopped");
+        progress_.note(fmt::format("stopped at t = {:.6g} ms; continue with --resume", clock_.time() * 1e3));
+        return exit_stopped;
+      }
+    }
+    model_.require_finite(clock_.time());
+    outputs_->finish(clock_.time());
+    progress_.finish(progress_state(0.0), "done");
+    conclude();
+    return exit_done;
+  }
+
+  void give_up() { progress_.finish(progress_state(0.0), "diverged"); }
+
+ private:
+  output::ProgressOptions progress_options() const {
+    auto p = output::progress_options_of_terminal(options_.quiet     ? output::Verbosity::quiet
+                                                  : options_.verbose ? output::Verbosity::verbose
+                                                                     : output::Verbosity::normal);
+    p.file = directory_.progress();
+    return p;
+  }
+  output::ProgressState progress_state(double dt) const {
+    return {clock_.time(),    case_.run.end_time,
+            clock_.step(),    dt,
+            model_.courant(), model_.air() ? model_.grid().cells() : 0};
+  }
+  bool finished() const { return clock_.time() >= case_.run.end_time * (1.0 - 1e-12) || model_.finished(); }
+
+  bool checkpoint_due(double last) const {
+    const CheckpointSpec& spec = case_.checkpoint;
+    if (spec.every_steps > 0 && clock_.step() % spec.every_steps == 0) return true;
+    if (spec.every_wall_time > 0.0 && wall_seconds() - last >= spec.every_wall_time) return true;
+    const double n = spec.every_time > 0.0 ? clock_.time() / spec.every_time : 0.5;
+    return std::abs(n - std::round(n)) < 1e-9 && n > 0.5;
+  }
+
+  void write_checkpoint() {
+    model_.require_finite(clock_.time());
+    output::CheckpointWriter w = store_.begin({clock_.time(), clock_.step()});
+    const auto fields = model_.state_fields();
+    for (std::size_t f = 0; f < fields.size(); ++f)
+      w.put(fmt::format("flow/field_{:02}", f), std::span<const Real>(fields[f]->data(), fields[f]->size()));
+    const auto numbers = model_.state_numbers();
+    for (std::size_t n = 0; n < numbers.size(); ++n)
+      w.put(fmt::format("model/numbers_{}", n), std::span<const double>(numbers[n]));
+    w.put("outputs", std::span<const double>(outputs_->state()));
+    w.put("wall_time", std::span<const double>(&wall_, 1));
+    store_.commit(w);
+  }
+
+  std::optional<double> find_checkpoint() {
+    auto newest = store_.newest();
+    for (const std::string& damage : newest.damaged) progress_.note("warning: " + damage);
+    if (!newest.reader)
+      throw InputError(
+          fmt::format("{} holds no checkpoint to resume from; run without --resume", path_.string()));
+    reader_.emplace(std::move(*newest.reader));
+    return reader_->at().time;
+  }
+
+  void restore() {
+    const auto read = [&](const std::string& name) {
+      std::vector<double> v(reader_->size(name));
+      reader_->get(name, std::span<double>(v));
+      return v;
+    };
+    const auto fields = model_.state_fields();
+    for (std::size_t f = 0; f < fields.size(); ++f)
+      reader_->get(fmt::format("flow/field_{:02}", f), std::span<Real>(fields[f]->data(), fields[f]->size()));
+    std::vector<std::vector<double>> numbers;
+    for (int n = 0; reader_->has(fmt::format("model/numbers_{}", n)); ++n)
+      numbers.push_back(read(fmt::format("model/numbers_{}", n)));
+    model_.restore_numbers(numbers, reader_->at().time);
+    outputs_->restore(read("outputs"));
+    wall_before_ = read("wall_time").at(0);
+    clock_.restore(reader_->at().time, reader_->at().step);
+    reader_.reset();
+  }
+
+  void conclude() {
+    nlohmann::ordered_json result = make_result(model_, clock_.time(), clock_.step(), wall_);
+    outputs_->report(result);
+    directory_.write_result(result);
+    if (case_.output.report) output::write_report(path_);
+    if (options_.quiet) return;
+    if (options_.verbose || model_.flow())
+      fmt::print("{}\n", output::operator_table(model_.operator_times(), wall_));
+    fmt::print("{}\n", output::verdict_sentence(result));
+    fmt::print("results: {}\n", (path_ / "result.json").string());
+    if (case_.output.report) fmt::print("report:  {}\n", (path_ / "report.html").string());
+  }
+
+  const Case& case_;
+  RunOptions options_;
+  std::filesystem::path path_;
+  output::RunDirectory directory_;
+  CoupledModel model_;
+  output::CheckpointStore store_;
+  output::Progress progress_;
+  output::Provenance provenance_;
+  std::unique_ptr<RunOutputs> outputs_;
+  std::optional<output::CheckpointReader> reader_;
+  Clock clock_;
+  double wall_ = 0.0, wall_before_ = 0.0;
+};
+
+void print_step(CoupledModel& model) {
+  fmt::print("One step of {}:\n", model.config().path);
+  int n = 0;
+  for (const auto& op : model.operator_times()) fmt::print("  {:2}. {:<26} {}\n", ++n, op.name, op.equation);
+}
+
+}  // namespace
+
+int run_case(const Case& c, const RunOptions& options) {
+  if (options.threads > 0) set_thread_count(options.threads);
+  if (options.dry_run) {
+    CoupledModel model(c);
+    if (!options.quiet) print_step(model);
+    return exit_done;
+  }
+  Run run(c, options);
+  try {
+    return run.advance_to_end();
+  } catch (const DivergedError&) {
+    run.give_up();
+    throw;
+  }
+}
+
+int plan_case(const Case& c) {
+  CoupledModel model(c);
+  print_step(model);
+  return exit_done;
+}
+
+}  // namespace ejecta

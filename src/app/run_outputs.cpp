@@ -1,0 +1,296 @@
+#include "app/run_outputs.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "app/jet_source.hpp"
+#include "base/clock.hpp"
+#include "output/body_surface.hpp"
+
+namespace ejecta {
+namespace {
+
+using output::Column;
+
+std::vector<Column> body_columns() {
+  std::vector<Column> c;
+  const auto add = [&](const char* name, const char* unit) {
+    for (const char* axis : {"_x", "_y", "_z"}) c.push_back({std::string(name) + axis, unit});
+  };
+  for (const char* axis : {"x", "y", "z"}) c.push_back({axis, "m"});
+  add("velocity", "m/s");
+  add("spin", "rad/s");
+  add("force", "N");
+  add("torque", "N m");
+  add("contact_force", "N");
+  return c;
+}
+
+/// A new history, or the one of the run that is resumed.
+std::unique_ptr<output::HistoryFile> open_history(const output::RunDirectory& directory,
+                                                  const std::string& name,
+                                                  const std::vector<std::string>& provenance,
+                                                  std::vector<Column> columns, std::optional<double> resume) {
+  const auto path = directory.history(name);
+  if (resume && std::filesystem::exists(path))
+    return std::make_unique<output::HistoryFile>(path, std::move(columns), *resume);
+  return std::make_unique<output::HistoryFile>(path, provenance, std::move(columns));
+}
+
+output::PvdSeries open_series(const output::RunDirectory& directory, const std::string& name,
+                              std::optional<double> resume) {
+  return resume ? output::PvdSeries(directory.fields(), name, *resume)
+                : output::PvdSeries(directory.fields(), name);
+}
+
+}  // namespace
+
+RunOutputs::RunOutputs(const Case& c, const CoupledModel& model, const output::RunDirectory& directory,
+                       const std::vector<std::string>& provenance, std::optional<double> resume)
+    : case_(c), model_(model), directory_(directory) {
+  for (const Body& b : model.particles().bodies())
+    bodies_.push_back(open_history(directory, "body-" + b.name, provenance, body_columns(), resume));
+  if (model.flow()) {
+    std::vector<Column> columns;
+    for (const auto& [name, unit] : model.flow()->quantities()) columns.push_back({name, unit});
+    columns.push_back({"transducer", "Pa"});
+    for (const ProbeSpec& spec : c.probes) {
+      Probe p{spec, std::vector<double>(columns.size() - 1),
+              {},   {},
+              0.0,  open_history(directory, "probe-" + spec.name, provenance, columns, resume)};
+      p.peak.assign(columns.size(), -1e300);
+      p.peak_time.assign(columns.size(), 0.0);
+      probes_.push_back(std::move(p));
+    }
+  } else {
+    energy_ = open_history(
+        directory, "ledger", provenance,
+        {{"kinetic", "J"}, {"potential", "J"}, {"elastic", "J"}, {"dissipated", "J"}, {"work", "J"}}, resume);
+  }
+  if (c.output.fields_interval > 0.0) {
+    if (model.flow()) {
+      air_ = open_series(directory, "air", resume);
+      writer_.emplace(model.grid());
+    }
+    if (!bodies_.empty()) bodies_series_ = open_series(directory, "bodies", resume);
+  }
+  if (model.flow() && c.output.slices_interval > 0.0)
+    for (const SliceSpec& s : c.slices) {
+      slices_.push_back(open_series(directory, "slice-" + s.name, resume));
+      if (!writer_) writer_.emplace(model.grid());
+    }
+  header_ = replay_header();
+  if (bodies_series_) bodies_writer_.emplace(header_.bodies);
+  if (c.output.report) {
+    replay_interval_ = c.output.slices_interval > 0.0 ? c.output.slices_interval : c.run.end_time / 200.0;
+    replay_ = resume && std::filesystem::exists(directory.replay())
+                  ? std::make_unique<output::ReplayFile>(directory.replay(), *resume)
+                  : std::make_unique<output::ReplayFile>(directory.replay(), header_);
+    for (const auto& raster : header_.rasters) samplers_.emplace_back(model.grid(), raster);
+  }
+}
+
+output::ReplayHeader RunOutputs::replay_header() const {
+  output::ReplayHeader h;
+  const Grid& grid = model_.grid();
+  if (model_.flow()) {
+    h.domain = {grid.lower(), grid.upper()};
+    const bool flat = !grid.active(1);
+    output::SliceRaster r;
+    r.name = "side";
+    r.axis = grid.active(2) ? 1 : 2;
+    const int across = r.axis == 1 ? 2 : 1;
+    r.position = flat ? grid.axis(1).centre[0] : r.axis == 2 ? grid.axis(2).centre[0] : case_.jet.nozzle.y();
+    if (!flat && (r.position < grid.lower()[r.axis] || r.position > grid.upper()[r.axis]))
+      r.position = 0.5 * (grid.lower()[r.axis] + grid.upper()[r.axis]);
+    r.mirror_x = grid.axisymmetric() || case_.boundary[0].type == BoundaryType::symmetry;
+    r.lower = {r.mirror_x ? -grid.upper().x() : grid.lower().x(), grid.lower()[across]};
+    r.upper = {grid.upper().x(), grid.upper()[across]};
+    const double width = r.upper[0] - r.lower[0], height = r.upper[1] - r.lower[1];
+    const double pixel = std::sqrt(width * height / 24000.0);
+    r.pixels = {std::clamp(int(width / pixel), 8, 600), std::clamp(int(height / pixel), 8, 600)};
+    h.rasters.push_back(r);
+  }
+  for (const Body& b : model_.particles().bodies())
+    h.bodies.push_back(output::make_body_surface(b.name, b.shape.surface(0.02 * b.shape.bounding_radius())));
+  if (model_.splitter())
+    h.plates.push_back({"splitter", model_.splitter()->edge(), Vec3(1, 0, 0), Vec3(0, 1, 0),
+                        case_.splitter.length, 0.08, case_.splitter.thickness});
+  if (model_.flow() && has_jet(case_)) {
+    h.nozzles.push_back({case_.jet.nozzle, Vec3(0, 0, 1), case_.valve.orifice_diameter});
+    h.valve_open.push_back({case_.valve.opens_at, case_.valve.opens_at + case_.valve.duration});
+    for (double t : case_.valve.more_pulses) h.valve_open.push_back({t, t + case_.valve.duration});
+  }
+  h.undisturbed = model_.undisturbed();
+  return h;
+}
+
+bool RunOutputs::due(double interval, double time, double& last) const {
+  if (time < last + interval * (1.0 - 1e-9)) return false;
+  last = interval > 0.0 ? std::floor(time / interval * (1.0 + 1e-9)) * interval : time;
+  return true;
+}
+
+void RunOutputs::add_events(Clock& clock, double end) const {
+  clock.add_events_every(case_.output.fields_interval, 0.0, end);
+  clock.add_events_every(case_.output.slices_interval, 0.0, end);
+}
+
+void RunOutputs::observe(double time, std::int64_t) {
+  update_probes(time);
+  if (due(case_.output.history_interval, time, last_history_)) write_histories(time);
+  if (case_.output.fields_interval > 0.0 && due(case_.output.fields_interval, time, last_fields_))
+    write_fields(time);
+  if (replay_ && due(replay_interval_, time, last_slices_)) write_replay(time);
+}
+
+void RunOutputs::update_probes(double time) {
+  const double dt = time - last_probe_time_;
+  last_probe_time_ = time;
+  if (!model_.flow()) return;
+  for (Probe& p : probes_) {
+    model_.flow()->sample(p.spec.position, p.values);
+    // What the instrument reads: the mean over its opening, delayed by its first-order response.
+    double seen = p.values[4];
+    if (p.spec.diameter > 0.0) {
+      std::vector<double> v(p.values.size());
+      double sum = seen, weight = 1.0;
+      for (int ring = 1; ring <= 2; ++ring)
+        for (int n = 0; n < 8; ++n) {
+          const double r = 0.25 * ring * p.spec.diameter * 0.9, angle = 0.785398163 * n;
+          model_.flow()->sample(p.spec.position + r * Vec3(std::cos(angle), std::sin(angle), 0), v);
+          sum += ring * v[4];
+          weight += ring;
+        }
+      seen = sum / weight;
+    }
+    const double share = p.spec.response_time > 0.0 ? 1.0 - std::exp(-dt / p.spec.response_time) : 1.0;
+    p.transducer += share * (seen - p.transducer);
+    for (std::size_t q = 0; q < p.peak.size(); ++q) {
+      const double value = q < p.values.size() ? p.values[q] : p.transducer;
+      if (value > p.peak[q]) p.peak[q] = value, p.peak_time[q] = time;
+    }
+  }
+}
+
+void RunOutputs::write_histories(double time) {
+  const auto bodies = model_.particles().bodies();
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    std::array<double, 18> row;
+    const Vec3 columns[] = {bodies[b].position,         bodies[b].velocity,
+                            bodies[b].angular_velocity, model_.loads()[b].force,
+                            model_.loads()[b].torque,   model_.particles().contact_force(int(b))};
+    for (std::size_t n = 0; n < 18; ++n) row[n] = columns[n / 3][static_cast<int>(n % 3)];
+    bodies_[b]->add(time, row);
+  }
+  for (Probe& p : probes_) {
+    p.values.push_back(p.transducer);
+    p.file->add(time, p.values);
+    p.values.pop_back();
+  }
+  if (energy_) {
+    const DemEnergy e = model_.particles().energy();
+    energy_->add(time, std::array{e.kinetic, e.potential, e.elastic, e.dissipated, e.work});
+  }
+}
+
+void RunOutputs::write_fields(double time) {
+  if (air_ && model_.air()) {
+    const auto path = air_->next(".vtr");
+    writer_->write(path, time, model_.flow()->fields());
+    air_->add(time, path);
+  }
+  if (bodies_series_) {
+    std::vector<output::BodyPose> poses;
+    output::BodyArray speed{"speed", 1, {}}, velocity{"velocity", 3, {}}, force{"force", 3, {}},
+        contact{"contact_force", 3, {}};
+    const auto bodies = model_.particles().bodies();
+    for (std::size_t b = 0; b < bodies.size(); ++b) {
+      poses.push_back({bodies[b].position, bodies[b].orientation});
+      speed.values.push_back(bodies[b].velocity.norm());
+      for (int d = 0; d < 3; ++d) {
+        velocity.values.push_back(bodies[b].velocity[d]);
+        force.values.push_back(model_.loads()[b].force[d]);
+        contact.values.push_back(model_.particles().contact_force(int(b))[d]);
+      }
+    }
+    const auto path = bodies_series_->next(".vtp");
+    bodies_writer_->write(path, time, poses, std::array{speed, velocity, force, contact});
+    bodies_series_->add(time, path);
+  }
+}
+
+void RunOutputs::write_replay(double time) {
+  output::ReplayFrame frame;
+  frame.time = time;
+  for (const Body& b : model_.particles().bodies()) frame.bodies.push_back({b.position, b.orientation});
+  if (model_.air())
+    for (std::size_t r = 0; r < samplers_.size(); ++r) {
+      output::SliceFrame slice;
+      slice.raster = static_cast<int>(r);
+      const auto u = model_.flow()->velocity();
+      samplers_[r].sample(u[0], u[1], u[2], slice);
+      frame.slices.push_back(std::move(slice));
+    }
+  replay_->add(frame);
+  if (!model_.air()) return;
+  for (std::size_t s = 0; s < slices_.size(); ++s) {
+    const SliceSpec& spec = case_.slices[s];
+    const auto path = slices_[s].next(".vtr");
+    writer_->write(path, time, model_.flow()->fields(),
+                   output::slice_range(model_.grid(), spec.axis, spec.position));
+    slices_[s].add(time, path);
+  }
+}
+
+void RunOutputs::finish(double time) {
+  if (time > last_history_ && case_.output.history_interval > 0.0) write_histories(time);
+}
+
+void RunOutputs::report(nlohmann::ordered_json& result) const {
+  if (!model_.flow()) return;
+  const auto quantities = model_.flow()->quantities();
+  for (const Probe& p : probes_) {
+    auto& out = result["probes"][p.spec.name];
+    for (std::size_t q = 0; q < p.peak.size(); ++q) {
+      const std::string name = q < quantities.size() ? quantities[q].first : "transducer";
+      out[name] = q < p.values.size() ? p.values[q] : p.transducer;
+      out["peak_" + name] = p.peak[q];
+      out["peak_time_" + name] = p.peak_time[q];
+    }
+  }
+  std::vector<double> values(quantities.size());
+  for (const LineSpec& line : case_.lines) {
+    auto& out = result["lines"][line.name];
+    for (int n = 0; n < line.points; ++n) {
+      const double share = line.points > 1 ? double(n) / (line.points - 1) : 0.0;
+      const Vec3 x = line.from + share * (line.to - line.from);
+      model_.flow()->sample(x, values);
+      out["position_m"].push_back(share * (line.to - line.from).norm());
+      for (std::size_t q = 0; q < values.size(); ++q) out[quantities[q].first].push_back(values[q]);
+    }
+  }
+}
+
+std::vector<double> RunOutputs::state() const {
+  std::vector<double> s{last_history_, last_fields_, last_slices_, last_probe_time_};
+  for (const Probe& p : probes_) {
+    s.push_back(p.transducer);
+    for (const auto* list : {&p.values, &p.peak, &p.peak_time}) s.insert(s.end(), list->begin(), list->end());
+  }
+  return s;
+}
+
+void RunOutputs::restore(const std::vector<double>& s) {
+  last_history_ = s.at(0), last_fields_ = s.at(1), last_slices_ = s.at(2), last_probe_time_ = s.at(3);
+  std::size_t at = 4;
+  for (Probe& p : probes_) {
+    p.transducer = s.at(at++);
+    for (auto* list : {&p.values, &p.peak, &p.peak_time})
+      for (double& v : *list) v = s.at(at++);
+  }
+}
+
+}  // namespace ejecta

@@ -1,0 +1,179 @@
+#include "app/run_result.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "app/jet_source.hpp"
+#include "base/parallel.hpp"
+#include "case/expression.hpp"
+
+namespace ejecta {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json vector_json(const Vec3& v) { return Json{v.x(), v.y(), v.z()}; }
+
+Json body_json(const CoupledModel& m, std::size_t b) {
+  const Case& c = m.config();
+  const Body& body = m.particles().bodies()[b];
+  Json j;
+  j["name"] = body.name;
+  j["mass_kg"] = body.mass;
+  j["final_position_m"] = vector_json(body.position);
+  j["final_velocity_m_s"] = vector_json(body.velocity);
+  j["final_spin_rad_s"] = vector_json(body.angular_velocity);
+  const Vec3& impulse = m.impulse()[b];
+  // What the air did: gravity and contacts are not part of it.
+  j["velocity_change_z_m_s"] = impulse.z() / body.mass;
+  j["impulse_x_N_s"] = impulse.x();
+  j["impulse_y_N_s"] = impulse.y();
+  j["impulse_z_N_s"] = impulse.z();
+  j["mean_force_N"] = vector_json(m.mean_force(b));
+  j["mean_torque_N_m"] = vector_json(m.mean_torque(b));
+  if (c.stream.enabled && c.stream.velocity.norm() > 0.0) {
+    const Vec3 direction = c.stream.velocity.normalized();
+    const double area = c.stream.reference_area > 0.0
+                            ? c.stream.reference_area
+                            : body.shape.projected_area(body.orientation.conjugate() * direction);
+    const double q = 0.5 * m.flow()->density() * c.stream.velocity.squaredNorm() * area;
+    const Vec3 force = m.mean_force(b);
+    j["drag_coefficient"] = force.dot(direction) / q;
+    j["lift_over_drag"] = (force - force.dot(direction) * direction).norm() / std::abs(force.dot(direction));
+    j["torque_over_drag_length"] =
+        m.mean_torque(b).norm() / (std::abs(force.dot(direction)) * 2.0 * body.shape.bounding_radius());
+  }
+  if (m.splitter()) {
+    if (const auto& v = m.splitter()->verdict(b)) {
+      j["outcome"] = v->ejected ? "ejected" : "not ejected";
+      j["clearance_at_splitter_m"] = v->clearance;
+      j["velocity_margin_z_m_s"] = v->velocity_margin;
+      j["time_at_splitter_s"] = v->time;
+    } else {
+      j["outcome"] = "undecided";
+    }
+  }
+  return j;
+}
+
+/// Volume-weighted L2 and largest errors against [exact].
+void add_errors(const CoupledModel& m, double time, Json& result) {
+  const ExactSpec& exact = m.config().exact;
+  if (!exact.velocity && !exact.pressure) return;
+  const Grid& g = m.grid();
+  const auto norms = [&](const std::string& name, const auto& difference) {
+    double sum = 0.0, volume = 0.0, largest = 0.0;
+    for (int k = 0; k < g.nz(); ++k)
+      for (int j = 0; j < g.ny(); ++j)
+        for (int i = 0; i < g.nx(); ++i) {
+          const double e = difference(i, j, k), v = g.volume(i, j, k);
+          sum += v * e * e;
+          volume += v;
+          largest = std::max(largest, std::abs(e));
+        }
+    result["errors"][name + "_l2"] = std::sqrt(sum / volume);
+    result["errors"][name + "_max"] = largest;
+  };
+  const auto u = m.flow()->velocity();
+  if (exact.velocity)
+    for (int d = 0; d < 3; ++d) {
+      if (!g.active(d)) continue;
+      const Expression f((*exact.velocity)[static_cast<std::size_t>(d)]);
+      norms(std::string("velocity_") + "xyz"[d], [&](int i, int j, int k) {
+        const Vec3 x = g.centre(i, j, k);
+        return double(u[static_cast<std::size_t>(d)](i, j, k)) - f(x.x(), x.y(), x.z(), time);
+      });
+    }
+  if (!exact.pressure) return;
+  // Pressure is known up to a constant: compare after removing both means.
+  const Expression f(*exact.pressure);
+  const auto fields = m.flow()->fields();
+  const ConstFieldView p = fields.at(1).component[0];
+  const double rho = m.flow()->density();
+  double mean = 0.0, volume = 0.0;
+  const auto raw = [&](int i, int j, int k) {
+    const Vec3 x = g.centre(i, j, k);
+    return rho * double(p(i, j, k)) - f(x.x(), x.y(), x.z(), time);
+  };
+  for (int k = 0; k < g.nz(); ++k)
+    for (int j = 0; j < g.ny(); ++j)
+      for (int i = 0; i < g.nx(); ++i) mean += g.volume(i, j, k) * raw(i, j, k), volume += g.volume(i, j, k);
+  mean /= volume;
+  norms("pressure", [&](int i, int j, int k) { return raw(i, j, k) - mean; });
+}
+
+}  // namespace
+
+std::vector<output::Assumption> assumptions_of(const Case& c) {
+  std::vector<output::Assumption> a;
+  if (has_jet(c)) {
+    a.push_back({"Diameter of the orifice", fmt::format("{:.3g} mm", c.valve.orifice_diameter * 1e3),
+                 "The paper does not give it; its 880 m/s, 75 mm and Mach 0.35 imply 1.55 to 1.9 mm with "
+                 "measured jet constants",
+                 "valve.orifice_diameter"});
+    a.push_back({"Opening of the valve",
+                 fmt::format("{:.3g} ms to open, {:.3g} ms to close", c.valve.rise_time * 1e3,
+                             c.valve.fall_time * 1e3),
+                 "The measured pressure at 75 mm peaks 6 to 7 ms after the command, while the jet's head "
+                 "needs 0.5 ms",
+                 "valve.rise_time"});
+    if (c.jet.kind == JetKind::self_similar)
+      a.push_back({"Air entering the box",
+                   fmt::format("self-similar round jet, spreading {:.3g}", c.jet.spreading),
+                   "Measured jet constants (Hussein, Capp & George 1994), with the thrust of the valve",
+                   "jet.spreading"});
+  }
+  if (c.splitter.enabled)
+    a.push_back({"Edge of the dividing plate",
+                 fmt::format("{:.0f} mm behind the jet, {:.0f} mm above the undisturbed path",
+                             c.splitter.distance * 1e3, c.splitter.height * 1e3),
+                 "The paper does not give it; one position for all particles separates its ejected from its "
+                 "kept ones",
+                 "splitter.height"});
+  if (c.launch.enabled)
+    a.push_back({"Way from the belt to the jet", fmt::format("{:.0f} mm", c.launch.drop_distance * 1e3),
+                 "The paper measured it but does not give it", "launch.drop_distance"});
+  return a;
+}
+
+Json make_result(const CoupledModel& m, double time, std::int64_t steps, double wall_time) {
+  const Case& c = m.config();
+  Json r;
+  r["title"] = c.run.title;
+  Json bodies = Json::array();
+  for (std::size_t b = 0; b < m.particles().bodies().size(); ++b) bodies.push_back(body_json(m, b));
+  if (m.splitter() && !bodies.empty()) r["outcome"] = bodies[0]["outcome"];
+  if (!bodies.empty()) r["bodies"] = bodies;
+  r["cells"] = m.flow() ? m.grid().cells() : 0;
+  r["steps"] = steps;
+  r["flow_steps"] = m.flow_steps();
+  r["simulated_time_s"] = time;
+  r["wall_time_s"] = wall_time;
+  r["threads"] = thread_count();
+  r["cell_steps_per_s"] =
+      m.flow() && wall_time > 0.0 ? double(m.grid().cells()) * double(m.flow_steps()) / wall_time : 0.0;
+  r["max_courant"] = m.max_courant();
+  r["ledger"] = Json::object();
+  if (m.flow()) {
+    m.flow()->report(r);
+    r["air_momentum_N_s"] = vector_json(m.flow()->momentum());
+    r["air_kinetic_energy_J"] = m.flow()->kinetic_energy();
+  }
+  if (!m.particles().bodies().empty()) {
+    const DemEnergy e = m.particles().energy();
+    const double scale = std::max({std::abs(e.kinetic), std::abs(e.work), std::abs(e.dissipated), 1e-30});
+    r["ledger"]["bodies_energy_J"] = e.ledger();
+    r["ledger"]["bodies_energy_scale_J"] = scale;
+    r["ledger"]["dissipated_J"] = e.dissipated;
+  }
+  add_errors(m, time, r);
+  for (const auto& op : m.operator_times())
+    r["operators"].push_back(
+        {{"name", op.name}, {"equation", op.equation}, {"seconds", op.seconds}, {"calls", op.calls}});
+  for (const auto& a : assumptions_of(c))
+    r["assumptions"].push_back({{"what", a.what}, {"value", a.value}, {"reason", a.reason}, {"key", a.key}});
+  return r;
+}
+
+}  // namespace ejecta
