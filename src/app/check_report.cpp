@@ -31,6 +31,11 @@ double two_digits(double v) {
   return std::round(v / unit) * unit;
 }
 
+std::string time_words(double seconds) {
+  if (seconds < 1e-3) return fmt::format("{:.2g} us", 1e6 * seconds);
+  return seconds < 1.0 ? fmt::format("{:.3g} ms", 1e3 * seconds) : fmt::format("{:.3g} s", seconds);
+}
+
 std::string length_words(double metres) { return fmt::format("{:.3g} mm", 1e3 * metres); }
 
 std::string flow_part(const Case& c, double bandwidth) {
@@ -39,15 +44,16 @@ std::string flow_part(const Case& c, double bandwidth) {
   text += fmt::format("  cells        {} ({} to {} across, {:.3g} to {:.3g} mm3)\n", f.cells,
                       length_words(f.smallest_cell), length_words(f.largest_cell), 1e9 * f.smallest_volume,
                       1e9 * f.largest_volume);
-  if (f.fastest > 0.0 || c.run.time_step)
+  if (f.fastest > 0.0 || c.run.time_step) {
     text += fmt::format(
-        "  steps        about {:.0f} of {:.2g} us while the air moves, up to {:.3g} ms ({:.3g} m/s at "
-        "Courant {})\n",
-        two_digits(static_cast<double>(f.steps)), 1e6 * f.time_step, 1e3 * f.blows_until, f.fastest,
-        c.run.courant);
-  else text += "  steps        unknown: no velocity is given, the flow makes its own\n";
-  text += fmt::format("  time         {} on this machine, if no flow faster than that appears\n",
-                      duration_words(expected_seconds(c, f, bandwidth)));
+        "  steps        about {:.0f} of {} while the fluid moves, up to {} ({:.3g} m/s at Courant {})\n",
+        two_digits(static_cast<double>(f.steps)), time_words(f.time_step), time_words(f.blows_until),
+        f.fastest, c.run.courant);
+    text += fmt::format("  time         {} on this machine, if nothing faster appears\n",
+                        duration_words(expected_seconds(c, f, bandwidth)));
+  } else {
+    text += "  steps        unknown: no velocity is given, the flow makes its own\n";
+  }
   text += fmt::format("  memory       about {}\n  disk         about {}\n", size_words(f.memory),
                       size_words(f.disk));
   return text;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <memory>
+#include <optional>
 
 #include "app/jet_source.hpp"
 #include "base/parallel.hpp"
@@ -26,19 +28,33 @@ Grid grid_of(const Case& c) {
   return Grid(axis(0), axis(1), axis(2), c.grid.geometry == Geometry::axisymmetric);
 }
 
-/// Largest speed of a state over the run, sampled at the centre of the box, m/s.
+Gas gas_of(const Case& c) { return {.gamma = c.fluid.gamma, .gas_constant = c.fluid.gas_constant}; }
+
+/// Speed of sound of a state at the start, m/s; what it does not say is ambient.
+double sound_speed(const Case& c, const StateSpec& s, const Vec3& at) {
+  const auto value = [&](const std::optional<std::string>& text, double ambient) {
+    return text ? Expression(*text)(at[0], at[1], at[2], 0.0) : ambient;
+  };
+  const Gas gas = gas_of(c);
+  const double pressure = value(s.pressure, c.environment.pressure);
+  const double temperature = s.density ? pressure / (gas.gas_constant * value(s.density, c.fluid.density))
+                                       : value(s.temperature, c.environment.temperature);
+  return gas_sound_speed(gas, temperature);
+}
+
+/// Largest speed at which a state carries anything over the run, sampled at one point, m/s: |u|, and sound
+/// where the solver follows it.
 double fastest_state(const Case& c, const StateSpec& s, const Vec3& at) {
-  if (!s.velocity) return 0.0;
   constexpr int samples = 64;
   double fastest = 0.0;
-  for (int n = 0; n <= samples; ++n) {
+  for (int n = 0; s.velocity && n <= samples; ++n) {
     Vec3 u;
     for (int a = 0; a < 3; ++a)
       u[a] = Expression((*s.velocity)[static_cast<std::size_t>(a)])(at[0], at[1], at[2],
                                                                     c.run.end_time * n / samples);
     fastest = std::max(fastest, u.norm());
   }
-  return fastest;
+  return fastest + (c.flow.solver == FlowSolver::compressible ? sound_speed(c, s, at) : 0.0);
 }
 
 /// Highest speed on the axis where the jet enters the box, m/s.
@@ -51,19 +67,35 @@ double jet_speed(const Case& c) {
   return fastest;
 }
 
+/// Gas expanded into a vacuum, sqrt(2 cp T0), m/s: no steady jet from a reservoir of temperature T0 is
+/// faster.
+double limiting_speed(const Gas& gas, double total_temperature) {
+  return std::sqrt(2.0 * gas.specific_heat_pressure() * total_temperature);
+}
+
+bool has_reservoir(const Case& c) {
+  const auto blows = [](const auto& b) { return b.type == BoundaryType::total_pressure; };
+  return has_jet(c) || std::any_of(c.boundary.begin(), c.boundary.end(), [&](const BoundarySpec& b) {
+           return blows(b) || std::any_of(b.patches.begin(), b.patches.end(), blows);
+         });
+}
+
 double fastest_speed(const Case& c, const Grid& grid) {
   const Vec3 centre = 0.5 * (grid.lower() + grid.upper());
-  double fastest = has_jet(c) ? jet_speed(c) : 0.0;
+  if (is_compressible(c) && has_reservoir(c))
+    return limiting_speed(gas_of(c), std::max(c.valve.supply_temperature, c.environment.temperature));
+  double fastest = has_flow(c) && has_jet(c) ? jet_speed(c) : 0.0;
   for (const BoundarySpec& face : c.boundary) {
-    fastest = std::max(fastest, fastest_state(c, face.state, centre));
+    if (face.state.velocity) fastest = std::max(fastest, fastest_state(c, face.state, centre));
     for (const PatchSpec& patch : face.patches)
       fastest = std::max(fastest, fastest_state(c, patch.state, patch.centre));
   }
   for (const InitialSpec& region : c.initial)
-    fastest = std::max(fastest, fastest_state(c, region.state, centre));
+    fastest = std::max(
+        fastest,
+        fastest_state(c, region.state, region.box ? 0.5 * ((*region.box)[0] + (*region.box)[1]) : centre));
+  if (c.initial.empty()) fastest = std::max(fastest, fastest_state(c, StateSpec{}, centre));
   for (const BodySpec& b : c.bodies) fastest = std::max(fastest, b.velocity.norm());
-  const Gas gas{.gamma = c.fluid.gamma, .gas_constant = c.fluid.gas_constant};
-  if (c.flow.solver == FlowSolver::compressible) fastest += gas_sound_speed(gas, c.environment.temperature);
   return fastest;
 }
 
@@ -156,7 +188,7 @@ double measured_bandwidth() {
 std::vector<std::string> assumptions(const Case& original) {
   Case c = original;
   const auto in_force = [&](const std::string& section) {
-    if (section == "valve" || section == "jet") return has_jet(c);
+    if (section == "valve" || section == "jet") return has_flow(c) && has_jet(c);
     if (section == "launch") return c.launch.enabled;
     if (section == "splitter") return c.splitter.enabled;
     return true;

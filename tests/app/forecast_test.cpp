@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "case/load.hpp"
 #include "case/template.hpp"
 
@@ -30,6 +32,17 @@ TEST(Forecast, TheJetLimitsTheStep) {
   EXPECT_NEAR(f.time_step, 1e-3 / f.fastest, 1e-9);
   EXPECT_NEAR(f.blows_until, 14e-3, 1e-12) << "pulse, closing, and the way out of the box";
   EXPECT_NEAR(static_cast<double>(f.steps), 14e-3 / f.time_step, 1.0);
+}
+
+/// Sod: sound of the left state, sqrt(1.4).
+TEST(Forecast, SoundLimitsTheStepOfAShockTube) {
+  const Forecast f = forecast(parse_case(case_template("shock-tube"), "sod"));
+  EXPECT_NEAR(f.fastest, std::sqrt(1.4), 1e-9);
+  EXPECT_NEAR(f.time_step, 0.5 * 0.005 / std::sqrt(1.4), 1e-9);
+}
+
+TEST(Forecast, NoSpeedGivenNoStepsForetold) {
+  EXPECT_EQ(forecast(parse_case(case_template("settling"), "settling")).fastest, 0.0);
 }
 
 TEST(Forecast, MemoryAndTimeGrowWithTheCells) {
