@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <span>
 #include <utility>
 #include <vector>
@@ -24,8 +25,9 @@ class BallContacts {
   void set_pairs(const std::vector<std::pair<int, int>>& pairs, int balls);
   /// Evaluates the law on every pair and moves the histories over dt.
   void compute(const Parts& parts, const Materials& materials, double dt);
-  /// Adds the force and the torque about the ball's centre that act on it.
-  void gather(int ball, double radius, Vec4& force, Vec4& torque) const;
+  /// Adds the force and the torque about the ball's centre that act on it. Returns its largest half overlap,
+  /// m.
+  double gather(int ball, double radius, Vec4& force, Vec4& torque) const;
 
   double elastic() const;  ///< J
 
@@ -55,7 +57,8 @@ class BallContacts {
   bool rolling_ = false;
 };
 
-inline void BallContacts::gather(int ball, double radius, Vec4& force, Vec4& torque) const {
+inline double BallContacts::gather(int ball, double radius, Vec4& force, Vec4& torque) const {
+  double deepest = 0.0;
   Vec4 f{}, t{};  // in registers: the rows might alias what the arguments refer to
   for (int k = first_[at(ball)]; k < first_[at(ball) + 1]; ++k) {
     const int entry = entries_[at(k)];
@@ -64,6 +67,7 @@ inline void BallContacts::gather(int ball, double radius, Vec4& force, Vec4& tor
     const Vec4 push = *reinterpret_cast<const LooseVec4*>(&row.fx);
     const Vec4 turning = *reinterpret_cast<const LooseVec4*>(&row.gx);
     f += sign * push;
+    deepest = std::max(deepest, row.half_overlap);
     t -= (radius - row.half_overlap) * turning;
     if (rolling_) {
       const std::size_t n = at(entry >> 1);
@@ -73,6 +77,7 @@ inline void BallContacts::gather(int ball, double radius, Vec4& force, Vec4& tor
   f[3] = t[3] = 0.0;
   force += f;
   torque += t;
+  return deepest;
 }
 
 }  // namespace ejecta

@@ -34,8 +34,9 @@ double shear_modulus(const MaterialSpec& m) { return m.youngs_modulus / (2 * (1 
 
 Materials::Materials(const Case& config)
     : specs_(config.materials), law_(config.contact.law), allow_tension_(config.contact.allow_tension) {
+  if (specs_.empty()) specs_.emplace_back();  // the defaults
   for (const MaterialSpec& m : specs_) check(m);
-  if (law_ == ContactLaw::linear && !(config.contact.linear_stiffness > 0) && !specs_.empty())
+  if (law_ == ContactLaw::linear && !(config.contact.linear_stiffness > 0))
     throw InputError(
         fmt::format("contact.linear_stiffness = {} N/m must be positive with law = \"linear\": a contact "
                     "without stiffness bears neither load nor friction (try 1e5 N/m)",
@@ -82,6 +83,7 @@ Materials::Materials(const Case& config)
 }
 
 int Materials::index(const std::string& name) const {
+  if (name.empty()) return 0;
   std::string known;
   for (std::size_t n = 0; n < specs_.size(); ++n) {
     if (specs_[n].name == name) return static_cast<int>(n);

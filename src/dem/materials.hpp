@@ -14,7 +14,7 @@ class Materials {
   explicit Materials(const Case& config);
 
   int count() const { return static_cast<int>(specs_.size()); }
-  /// Index of a material by name. Throws InputError with the known names.
+  /// Index of a material by name; no name: the first. Throws InputError with the known names.
   int index(const std::string& name) const;
   const MaterialSpec& spec(int index) const { return specs_[static_cast<std::size_t>(index)]; }
   const PairConstants<double>& pair(int a, int b) const {

@@ -22,6 +22,13 @@ Vec4 load_torque(std::size_t n, std::span<const Load> loads) {
   return loads.empty() ? Vec4{} : vec4(loads[n].torque);
 }
 
+void note_peak(ContactPeaks& p, double overlap, double force_squared, double dt) {
+  if (!(force_squared > 0)) return;
+  p.time += dt;
+  p.overlap = std::max(p.overlap, overlap);
+  if (force_squared > p.force * p.force) p.force = std::sqrt(force_squared);
+}
+
 }  // namespace
 
 Particles::Particles(const Vec3& gravity, Materials materials, const ContactSpec& contact)
@@ -53,11 +60,21 @@ void Particles::advance(double dt, std::span<const Load> loads) {
   unpack_spheres();
 }
 
+void Particles::release(std::size_t n) {
+  Launch& launch = launches_[n];
+  if (!launch.waiting) return;
+  launch.waiting = false;
+  bodies_[n].velocity = launch.velocity;
+  bodies_[n].angular_velocity = launch.spin;
+  momentum_[n] = bodies_[n].angular_momentum();
+}
+
 void Particles::pack_spheres() {
   spheres_.resize(bodies_.size());
   packed_.resize(bodies_.size());
   for (std::size_t n = 0; n < bodies_.size(); ++n) {
     const Body& b = bodies_[n];
+    if (moves(b)) release(n);
     packed_[n] = b.motion == Motion::free && moves(b) && parts_.is_sphere(static_cast<int>(n));
     if (packed_[n])
       spheres_[n] = {vec4(b.position), vec4(b.velocity), vec4(momentum_[n]),
@@ -129,6 +146,7 @@ double Particles::drift_body(int index, std::span<const Load> loads, double dt) 
   Body& b = bodies_[n];
   double moved = 0.0;
   if (moves(b)) {
+    release(n);
     const bool pushed = b.motion == Motion::free;
     const Vec3 kick = pushed ? Vec3(0.5 * dt * acceleration(n, loads)) : Vec3(0, 0, 0);
     const Vec3 twist = pushed ? Vec3(0.5 * dt * torque_on(n, loads)) : Vec3(0, 0, 0);
@@ -199,8 +217,10 @@ void Particles::kick(double dt, std::span<const Load> loads) {
   const int count = static_cast<int>(bodies_.size());
   const Vec4 gravity = vec4(gravity_);
   block_work_.resize(static_cast<std::size_t>(block_count(count, kBlock)));
-  solids_.gather([&](int body, const Vec3& force, const Vec3& moment, const Vec3& point) {
+  solids_.gather([&](int body, const Vec3& force, const Vec3& moment, const Touch& touch) {
     const std::size_t n = static_cast<std::size_t>(body);
+    const Vec3& point = touch.point;
+    peaks_[n].overlap = std::max(peaks_[n].overlap, touch.thickness > 0 ? touch.thickness : touch.overlap);
     if (packed_[n]) {
       spheres_[n].force += vec4(force);
       spheres_[n].torque += vec4((point - vec3(spheres_[n].position)).cross(force) + moment);
@@ -218,7 +238,8 @@ void Particles::kick(double dt, std::span<const Load> loads) {
       if (packed_[n]) {
         SphereState& s = spheres_[n];
         const int ball = parts_.first_ball(i);
-        balls_.gather(ball, parts_.row(ball).radius, s.force, s.torque);
+        const double half = balls_.gather(ball, parts_.row(ball).radius, s.force, s.torque);
+        note_peak(peaks_[n], 2 * half, dot(s.force, s.force), dt);
         const Vec4 push = loads.empty() ? gravity : gravity + s.inverse_mass * vec4(loads[n].force);
         work.into_contacts -= kick_sphere(s, push, load_torque(n, loads), dt);
         if (!loads.empty())
@@ -241,13 +262,15 @@ void Particles::kick(double dt, std::span<const Load> loads) {
 void Particles::kick_body(int index, std::span<const Load> loads, double dt, Work& work) {
   const std::size_t n = static_cast<std::size_t>(index);
   Body& b = bodies_[n];
+  double deepest = 0.0;
   for (int ball = parts_.first_ball(index); ball < parts_.first_ball(index + 1); ++ball) {
     Vec4 force{}, torque{};
     const BallRow& row = parts_.row(ball);
-    balls_.gather(ball, row.radius, force, torque);
+    deepest = std::max(deepest, balls_.gather(ball, row.radius, force, torque));
     force_[n] += vec3(force);
     torque_[n] += vec3(torque) + (row.centre() - b.position).cross(vec3(force));
   }
+  note_peak(peaks_[n], 2 * deepest, force_[n].squaredNorm(), dt);
   if (!moves(b)) return;
   const bool pushed = b.motion == Motion::free;
   if (pushed) {

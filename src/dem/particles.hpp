@@ -31,6 +31,13 @@ struct ContactRecord {
   double overlap = 0.0;                  ///< m
 };
 
+/// The hardest contact of a body since the start.
+struct ContactPeaks {
+  double overlap = 0.0;  ///< m, largest (of flat contacts the mean thickness)
+  double force = 0.0;    ///< N, largest sum of contact forces
+  double time = 0.0;     ///< s in contact
+};
+
 /// All bodies that move and touch, with their walls. Advances itself; knows no fluid.
 class Particles {
  public:
@@ -49,6 +56,7 @@ class Particles {
   const Materials& materials() const { return materials_; }
   /// N, of all contacts of a body at the last sub-step.
   const Vec3& contact_force(int index) const { return force_[static_cast<std::size_t>(index)]; }
+  const ContactPeaks& peaks(int index) const { return peaks_[static_cast<std::size_t>(index)]; }
   std::vector<ContactRecord> contacts() const;
   DemEnergy energy() const;
 
@@ -76,6 +84,7 @@ class Particles {
   };
   double drift_body(int index, std::span<const Load> loads, double dt);
   void kick_body(int index, std::span<const Load> loads, double dt, Work& work);
+  void release(std::size_t n);
   void pack_spheres();
   void unpack_spheres();
   void add_work(double dt);
@@ -96,9 +105,15 @@ class Particles {
   std::vector<Vec3> force_, torque_;   // of contacts at the last sub-step
   std::vector<Vec3> velocity_, spin_;  // as the contact laws see them: extrapolated to the whole step
   std::vector<SphereState> spheres_;   // of bodies that are free spheres, while advance() runs
-  std::vector<char> packed_;           // which those are
-  std::vector<Vec3> listed_at_;        // positions for which candidates were listed
-  std::vector<double> turned_;         // m, no part of a body has moved farther by its turning since
+  std::vector<ContactPeaks> peaks_;
+  struct Launch {
+    bool waiting = false;
+    Vec3 velocity{0, 0, 0}, spin{0, 0, 0};
+  };
+  std::vector<Launch> launches_;  // of bodies that rest until they are released
+  std::vector<char> packed_;      // which those are
+  std::vector<Vec3> listed_at_;   // positions for which candidates were listed
+  std::vector<double> turned_;    // m, no part of a body has moved farther by its turning since
   std::vector<double> block_moved_;
   std::vector<Work> block_work_;
   Work power_;  // at the last sub-step

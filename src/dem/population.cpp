@@ -14,7 +14,7 @@ namespace ejecta {
 namespace {
 
 constexpr std::size_t kHead = 6;      // numbers stored before the bodies
-constexpr std::size_t kPerBody = 19;  // numbers stored of each body
+constexpr std::size_t kPerBody = 22;  // numbers stored of each body
 
 void append(std::vector<double>& out, const Vec3& v) { out.insert(out.end(), v.data(), v.data() + 3); }
 
@@ -25,6 +25,12 @@ int Particles::add(Body body) {
     throw InputError(
         fmt::format("body \"{}\": mass {} kg and moments of inertia must be positive", body.name, body.mass));
   const int index = static_cast<int>(bodies_.size());
+  launches_.push_back({time_ < body.release_at, body.velocity, body.angular_velocity});
+  if (launches_.back().waiting || body.motion == Motion::fixed) {
+    body.velocity.setZero();
+    body.angular_velocity.setZero();
+  }
+  peaks_.emplace_back();
   momentum_.push_back(body.angular_momentum());
   for (auto* v : {&force_, &torque_, &velocity_, &spin_, &listed_at_}) v->push_back(Vec3(0, 0, 0));
   turned_.push_back(0.0);
@@ -55,6 +61,8 @@ void Particles::remove(int index) {
   for (auto* v : {&momentum_, &force_, &torque_, &velocity_, &spin_, &listed_at_})
     v->erase(v->begin() + index);
   turned_.erase(turned_.begin() + index);
+  peaks_.erase(peaks_.begin() + index);
+  launches_.erase(launches_.begin() + index);
   parts_.clear();
   for (std::size_t n = 0; n < bodies_.size(); ++n) parts_.add(bodies_[n], static_cast<int>(n));
   balls_.rename(ball_names, parts_.ball_count());
@@ -72,10 +80,11 @@ void Particles::place(int index, const Vec3& position, const Quat& orientation, 
   Body& b = bodies_[n];
   b.position = position;
   b.orientation = orientation;
-  b.velocity = velocity;
-  b.angular_velocity = angular_velocity;
+  launches_[n] = {time_ < b.release_at, velocity, angular_velocity};
+  b.velocity = launches_[n].waiting ? Vec3(0, 0, 0) : velocity;
+  b.angular_velocity = launches_[n].waiting ? Vec3(0, 0, 0) : angular_velocity;
   momentum_[n] = b.angular_momentum();
-  parts_.update(index, b, velocity, angular_velocity);
+  parts_.update(index, b, b.velocity, b.angular_velocity);
   relist_ = true;
 }
 
@@ -126,6 +135,7 @@ std::vector<double> Particles::state() const {
     append(s, momentum_[n]);
     append(s, force_[n]);
     append(s, torque_[n]);
+    s.insert(s.end(), {peaks_[n].overlap, peaks_[n].force, peaks_[n].time});
   }
   balls_.save(s);
   solids_.save(s);
@@ -150,6 +160,8 @@ void Particles::restore(std::span<const double> s) {
     momentum_[n] = Vec3(at + 10);
     force_[n] = Vec3(at + 13);
     torque_[n] = Vec3(at + 16);
+    peaks_[n] = {at[19], at[20], at[21]};
+    launches_[n].waiting = time_ < b.release_at;
     b.angular_velocity = angular_velocity(b.orientation, momentum_[n], b.inertia);
     parts_.update(static_cast<int>(n), b, b.velocity, b.angular_velocity);
   }

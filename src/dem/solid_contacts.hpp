@@ -58,14 +58,14 @@ class SolidContacts {
   void compute(const Parts& parts, std::span<const Body> bodies, std::span<const Wall> walls,
                const Materials& materials, std::span<const Vec3> velocity, std::span<const Vec3> spin,
                double dt);
-  /// add(body, force, moment, point): each contact's force and moment at its point on each of its bodies, in
+  /// add(body, force, moment, touch): each contact's force and moment at its point on each of its bodies, in
   /// order.
   template <class Add>
   void gather(const Add& add) const {
     for (const SolidPair& p : pairs_) {
       if (!(p.touch.overlap > 0)) continue;
-      add(p.body_a, p.force, p.moment, p.touch.point);
-      if (p.body_b >= 0) add(p.body_b, Vec3(-p.force), Vec3(-p.moment), p.touch.point);
+      add(p.body_a, p.force, p.moment, p.touch);
+      if (p.body_b >= 0) add(p.body_b, Vec3(-p.force), Vec3(-p.moment), p.touch);
     }
   }
 

@@ -66,6 +66,9 @@ TEST(ChungOoi, Test1ElasticNormalImpactOfTwoSpheres) {
     EXPECT_NEAR(i.force, row.force, 1e-3 * row.force);
     EXPECT_NEAR(i.time, row.time, 1e-3 * row.time);
     EXPECT_NEAR(p.bodies()[0].velocity.x(), -10, 1e-4);
+    EXPECT_NEAR(p.peaks(0).overlap, row.overlap, 1e-3 * row.overlap);
+    EXPECT_NEAR(p.peaks(0).force, row.force, 1e-3 * row.force);
+    EXPECT_NEAR(p.peaks(1).time, row.time, 1e-3 * row.time);
   }
 }
 

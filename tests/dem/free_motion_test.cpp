@@ -57,6 +57,7 @@ TEST(FreeMotion, ParabolaIsExactAndReleaseIsKept) {
   c.bodies[0].velocity = Vec3(3, 0, 1);
   c.bodies[0].release_at = 0.02;
   Particles p = make_particles(c);
+  EXPECT_EQ(p.bodies()[0].velocity, Vec3(0, 0, 0));
   p.advance(0.02);
   EXPECT_EQ(p.bodies()[0].position, Vec3(0, 0, 0));
   p.advance(0.1);
