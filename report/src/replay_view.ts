@@ -21,13 +21,14 @@ function controls(runs: Run[], player: Player): HTMLElement {
     type: "range", id: "scrub", min: 0, max: 1000, step: 1, "aria-label": "Time of the replay",
   });
   const clock = h("output", { class: "clock", id: "clock", for: "scrub" });
+  const length = player.end - player.start || 1; // a run of a single moment
   button.addEventListener("click", () => player.toggle());
   range.addEventListener("input", () =>
-    player.seek(player.start + (Number(range.value) / 1000) * (player.end - player.start)));
+    player.seek(player.start + (Number(range.value) / 1000) * length));
 
   const bands = h("div", { class: "bands", "aria-hidden": "true" });
   const place = (from: number, to: number, kind: string, title: string): void => {
-    const share = (t: number): number => Math.min(Math.max((t - player.start) / (player.end - player.start), 0), 1) * 100;
+    const share = (t: number): number => Math.min(Math.max((t - player.start) / length, 0), 1) * 100;
     bands.append(h("div", { class: `band ${kind}`, style: `left:${share(from)}%;width:${share(to) - share(from)}%`, title }));
   };
   const replay = runs.find((run) => run.replay)!.replay!;
@@ -39,7 +40,7 @@ function controls(runs: Run[], player: Player): HTMLElement {
     const label = player.playing ? "Pause" : "Play";
     if (button.textContent !== label) button.textContent = label;
     button.classList.toggle("playing", player.playing);
-    range.value = String(Math.round((1000 * (time - player.start)) / (player.end - player.start)));
+    range.value = String(Math.round((1000 * (time - player.start)) / length));
     range.setAttribute("aria-valuetext", `${fixed(time * 1e3, 1)} milliseconds`);
     clock.textContent = `${fixed(time * 1e3, 2)} ms`;
   };

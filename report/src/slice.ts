@@ -1,5 +1,5 @@
 import { AIR_COLOURS, bodyColour, paintAir } from "./colour";
-import type { Raster, Run } from "./data";
+import type { Raster, Run, SliceFrame } from "./data";
 import { h } from "./dom";
 import { fixed, ticks } from "./format";
 import { frameIndex, placed, poseAt } from "./motion";
@@ -54,18 +54,25 @@ function planeOf(raster: Raster): Plane {
   return { raster, first, second };
 }
 
-/** Draws a body's shadow on the plane: its triangles, lit, the nearer over the farther. */
+/** Draws a body's shadow on the plane: its triangles, lit, the nearer over the farther. False when it is elsewhere. */
 function drawBody(
   c: CanvasRenderingContext2D, run: Run, b: number, time: number, plane: Plane, colour: string,
   toX: (v: number) => number, toY: (v: number) => number,
-): void {
+): boolean {
   const surface = run.replay!.bodies[b]!;
   const pose = poseAt(run.replay!, b, time);
-  if (!pose) return;
+  if (!pose) return false;
   const v = placed(surface, pose);
   const { first, second, raster } = plane;
+  const beyond = (d: number, side: 0 | 1): boolean => {
+    let [low, high] = [Infinity, -Infinity];
+    for (let n = d; n < v.length; n += 3) [low, high] = [Math.min(low, v[n]!), Math.max(high, v[n]!)];
+    return high < raster.lower[side] || low > raster.upper[side];
+  };
+  if (beyond(first, 0) || beyond(second, 1)) return false;
   const towards = raster.axis === 1 ? -1 : 1; // the viewer of (x, z) stands at negative y
   const faces: { depth: number; light: number; points: [number, number][] }[] = [];
+  const outline = new Map<number, [number, number]>(); // edges of one face only: those between front and back
   for (let t = 0; t < surface.triangles.length; t += 3) {
     const corner = [0, 1, 2].map((n) => 3 * surface.triangles[t + n]!);
     const at = (n: number, d: number): number => v[corner[n]! + d]!;
@@ -76,6 +83,11 @@ function drawBody(
     ];
     const size = Math.hypot(...normal) || 1;
     if (normal[raster.axis]! * towards <= 0) continue;
+    for (let n = 0; n < 3; ++n) {
+      const [a, e] = [corner[n]!, corner[(n + 1) % 3]!];
+      const key = Math.min(a, e) * v.length + Math.max(a, e);
+      if (!outline.delete(key)) outline.set(key, [a, e]);
+    }
     faces.push({
       depth: towards * (at(0, raster.axis) + at(1, raster.axis) + at(2, raster.axis)),
       light: (0.35 * normal[first]! + 0.6 * normal[second]! + 0.7 * towards * normal[raster.axis]!) / size,
@@ -84,25 +96,29 @@ function drawBody(
   }
   faces.sort((a, f) => a.depth - f.depth);
   const trace = (points: [number, number][]): void => {
-    c.beginPath();
     points.forEach(([x, y], n) => (n ? c.lineTo(x, y) : c.moveTo(x, y)));
     c.closePath();
   };
   c.lineJoin = "round";
   c.lineWidth = 3.5;
   c.strokeStyle = colour;
-  for (const f of faces) {
-    trace(f.points);
-    c.stroke();
+  c.lineCap = "round";
+  c.beginPath();
+  for (const [a, e] of outline.values()) {
+    c.moveTo(toX(v[a + first]!), toY(v[a + second]!));
+    c.lineTo(toX(v[e + first]!), toY(v[e + second]!));
   }
+  c.stroke();
   c.lineWidth = 0.6;
   for (const f of faces) {
     const grey = Math.round(120 + 100 * Math.max(0, f.light));
     c.fillStyle = c.strokeStyle = `rgb(${grey},${grey - 6},${grey - 14})`;
+    c.beginPath();
     trace(f.points);
     c.fill();
     c.stroke();
   }
+  return true;
 }
 
 /** The air in one plane with the bodies in it. */
@@ -196,9 +212,12 @@ export class SliceView {
     c.beginPath();
     c.rect(left, top, w, ht);
     c.clip();
+    let inView = 0;
     for (const run of this.runs) {
       const layer = run === this.run ? c : this.ghostLayer(ratio);
-      run.replay?.bodies.forEach((_, b) => drawBody(layer, run, b, player.time, this.plane, bodyColour(b, true), toX, toY));
+      run.replay?.bodies.forEach((_, b) => {
+        if (drawBody(layer, run, b, player.time, this.plane, bodyColour(b, true), toX, toY)) ++inView;
+      });
       if (layer === c) continue;
       c.globalAlpha = 0.5;
       c.drawImage(this.ghosts, 0, 0, width, height);
@@ -207,10 +226,17 @@ export class SliceView {
     c.restore();
     c.strokeStyle = "rgba(255,255,255,0.25)";
     c.strokeRect(left, top, w, ht);
+    const notes = [
+      this.sliceNow() ? "" : "air no longer computed",
+      inView > 0 || this.run.replay!.bodies.length === 0 ? "" : "no body in this view",
+    ].filter(Boolean);
+    c.fillStyle = "rgba(226,234,245,0.75)";
+    c.textAlign = "left";
+    c.fillText(notes.join(", "), left + 6, top + ht - 8);
     if (!player.playing)
       canvas.setAttribute("aria-label", `Air speed in the plane ${AXES[axis]} = ` +
         `${fixed(this.plane.raster.position * 1e3, 1)} mm at ${fixed(player.time * 1e3, 2)} ms, up to ` +
-        `${fixed(this.airNow(), 1)} m/s, with the bodies drawn to scale.`);
+        `${fixed(this.sliceNow()?.fullScale ?? 0, 1)} m/s, with the bodies drawn to scale.`);
   }
 
   /** Bodies of the other run are drawn apart and laid over as a whole, so that their faces do not shine through. */
@@ -222,8 +248,8 @@ export class SliceView {
     return layer;
   }
 
-  private airNow(): number {
+  private sliceNow(): SliceFrame | undefined {
     const frames = this.run.replay!.frames;
-    return frames[frameIndex(frames, this.player.time)]!.slices.get(this.image.raster)?.fullScale ?? 0;
+    return frames[frameIndex(frames, this.player.time)]!.slices.get(this.image.raster);
   }
 }
