@@ -57,9 +57,15 @@ double fastest_state(const Case& c, const StateSpec& s, const Vec3& at) {
   return fastest + (c.flow.solver == FlowSolver::compressible ? sound_speed(c, s, at) : 0.0);
 }
 
+/// The jet, or for one that would have to be computed first, the self-similar one of the same valve.
+std::unique_ptr<JetSource> jet_of(Case c) {
+  if (c.jet.kind == JetKind::computed) c.jet.kind = JetKind::self_similar;
+  return make_jet_source(c);
+}
+
 /// Highest speed on the axis where the jet enters the box, m/s.
 double jet_speed(const Case& c) {
-  const std::unique_ptr<JetSource> jet = make_jet_source(c);
+  const std::unique_ptr<JetSource> jet = jet_of(c);
   constexpr int samples = 256;
   double fastest = 0.0;
   for (int n = 0; n <= samples; ++n)
@@ -103,7 +109,7 @@ double fastest_speed(const Case& c, const Grid& grid) {
 double blows_until(const Case& c) {
   if (!has_flow(c) || !has_jet(c) || c.run.until != RunUntil::verdict) return c.run.end_time;
   constexpr double leaves = 5e-3;  // s, several transits of the box
-  return std::min(c.run.end_time, make_jet_source(c)->dead_from() + leaves);
+  return std::min(c.run.end_time, jet_of(c)->dead_from() + leaves);
 }
 
 // Counted in the solvers: fields held, and field values read or written a cell and step.

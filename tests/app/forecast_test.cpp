@@ -34,6 +34,11 @@ TEST(Forecast, TheJetLimitsTheStep) {
   EXPECT_NEAR(static_cast<double>(f.steps), 14e-3 / f.time_step, 1.0);
 }
 
+TEST(Forecast, AJetThatIsComputedFirstIsNotComputedForTheForecast) {
+  const Forecast f = forecast(ejection({"jet.kind=computed", "jet.source_case=nowhere.toml"}));
+  EXPECT_EQ(f.fastest, forecast(ejection()).fastest);
+}
+
 /// Sod: sound of the left state, sqrt(1.4).
 TEST(Forecast, SoundLimitsTheStepOfAShockTube) {
   const Forecast f = forecast(parse_case(case_template("shock-tube"), "sod"));
