@@ -28,6 +28,8 @@ ejecta_program_test(output.paraview "${PVPYTHON}" --force-offscreen-rendering ${
 ejecta_program_test(output.python "${python}" ${sources}/output/python_reader_test.py ${PROJECT_SOURCE_DIR}/python
                     ${sample} ${CMAKE_BINARY_DIR}/tests/sample.png)
 set_tests_properties(output.paraview output.python PROPERTIES FIXTURES_REQUIRED sample_run)
+ejecta_program_test(output.killed "${python}" ${sources}/output/kill_test.py ${PROJECT_SOURCE_DIR}/python
+                    $<TARGET_FILE:make_sample_run> ${CMAKE_BINARY_DIR}/tests/killed.run)
 
 # The report of one run, of two laid over each other, and of a jet without bodies.
 add_test(NAME output.sample_run_pushed COMMAND make_sample_run ${CMAKE_BINARY_DIR}/tests/pushed.run 3)
