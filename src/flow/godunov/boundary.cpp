@@ -53,7 +53,9 @@ Boundaries::Boundaries(const Grid& grid, const GasConstants& gas) : grid_(grid),
     const Across t = across(f / 2);
     const auto cells = static_cast<std::size_t>(grid.n(t.a)) * static_cast<std::size_t>(grid.n(t.b));
     face_[static_cast<std::size_t>(f)].handle.assign(cells, 0);
-    face_[static_cast<std::size_t>(f)].remembered.assign(cells, Real(0));
+    const Axis& axis = grid.axis(f / 2);
+    face_[static_cast<std::size_t>(f)].anchor =
+        Real(kRelaxation * (f % 2 ? axis.width.back() : axis.width.front()) / axis.length());
   }
   conditions_.push_back(Condition{});  // 0: symmetry everywhere until set
 }
@@ -64,8 +66,6 @@ int Boundaries::set_face(int face, const Condition& condition) {
   Face& f = face_[static_cast<std::size_t>(face)];
   f.base = handle;
   std::fill(f.handle.begin(), f.handle.end(), handle);
-  std::fill(f.remembered.begin(), f.remembered.end(),
-            Real(condition.state.pressure - double(gas_.reference_pressure)));
   return handle;
 }
 
@@ -114,29 +114,6 @@ Primitive Boundaries::load(const Block& w, int face, std::ptrdiff_t n) const {
   return {at(kRho), sign * at(kU + d), at(kU + t.a), at(kU + t.b), at(kP), at(kK), at(kE)};
 }
 
-void Boundaries::listen(const Block& w, double dt) {
-  for (int face = 0; face < 6; ++face) {
-    const int d = face / 2;
-    Face& f = face_[static_cast<std::size_t>(face)];
-    const Across t = across(d);
-    const int last = face % 2 ? grid_.n(d) - 1 : 0;
-    const double width = grid_.axis(d).width[static_cast<std::size_t>(last)], length = grid_.axis(d).length();
-    const std::ptrdiff_t s = stride(w, d), sa = stride(w, t.a), sb = stride(w, t.b);
-    for_each_face_cell(face, false, [&](int a, int b, std::size_t cell) {
-      const Condition& c = conditions_[f.handle[cell]];
-      if (c.type != BoundaryType::wave_transmissive) return;
-      const Primitive inside = load(w, face, last * s + a * sa + b * sb);
-      const double sound = std::sqrt(double(gas_.sound_speed_squared(inside.rho, inside.p)));
-      const double speed = std::max(0.0, sound - double(inside.un));
-      const double far = c.state.pressure - double(gas_.reference_pressure);
-      double p = double(f.remembered[cell]);
-      p = double(inside.p) + (p - double(inside.p)) * std::exp(-speed * dt / width);
-      p += (far - p) * (1.0 - std::exp(-kRelaxation * sound * dt / length));
-      f.remembered[cell] = Real(p);
-    });
-  }
-}
-
 void Boundaries::fill_face(Block& w, int face) const {
   const int d = face / 2, n = grid_.n(d);
   const Across t = across(d);
@@ -149,7 +126,7 @@ void Boundaries::fill_face(Block& w, int face) const {
     const std::ptrdiff_t at = first * s + a * sa + b * sb, step = inward * s;
     const Primitive one = load(w, face, at), two = n > 1 ? load(w, face, at + step) : one;
     GhostStates g = {one, one};  // an axis of one cell carries no flux and no gradient
-    if (n > 1) g = ghost_states(c, gas_, one, two, in_face_axes(c.state, d, sign, gas_), f.remembered[cell]);
+    if (n > 1) g = ghost_states(c, gas_, one, two, in_face_axes(c.state, d, sign, gas_), f.anchor);
     store(w, d, sign, at - step, g.first);
     store(w, d, sign, at - 2 * step, g.second);
   });

@@ -34,10 +34,13 @@ struct GhostStates {
   Primitive first, second;
 };
 
-/// Ghosts of `condition` from the two cells inside. `waves` is the pressure a transmissive face remembers
-/// (difference to the reference); `outside` is the condition's state in the face's axes.
+/// Ghosts of `condition` from the two cells inside; `outside` is the condition's state in the face's axes.
+/// `anchor` is the share of the difference to the far pressure that a transmissive face takes back: sigma
+/// h/L, h the cell, L the box, so that the incoming wave is sigma c/L (p_far - p) (Poinsot & Lele 1992, J.
+/// Comput. Phys. 101:104). Apart from that the gas beyond is the gas inside, and the Riemann solver sends
+/// nothing back.
 GhostStates ghost_states(const Condition& condition, const GasConstants& gas, const Primitive& first,
-                         const Primitive& second, const Primitive& outside, Real remembered);
+                         const Primitive& second, const Primitive& outside, Real anchor);
 
 /// A gas of total pressure p0 (absolute) and temperature T0 that enters along +n from a convergent nozzle:
 /// meets the invariant u - 2c/(gamma-1) that arrives from inside, or is sonic when that asks for more.
@@ -59,10 +62,6 @@ class Boundaries {
   /// Cells of a face that belong to a handle.
   int cells_of(int face, int handle) const;
 
-  /// Lets the transmissive faces hear the pressure inside for a step of dt: the pressure outside follows the
-  /// wave that leaves with u + c, and relaxes to the far pressure over the length of the box (Poinsot & Lele
-  /// 1992).
-  void listen(const Block& w, double dt);
   void fill(Block& w) const;
   /// First ghost layer of a derived field: that of the cell inside (periodic: of the far side).
   void extend(Field& field) const;
@@ -72,7 +71,7 @@ class Boundaries {
   struct Face {
     std::uint8_t base = 0;             ///< handle of the face itself
     std::vector<std::uint8_t> handle;  ///< per cell of the face
-    std::vector<Real> remembered;      ///< pressure outside transmissive cells
+    Real anchor = 0;                   ///< of ghost_states
   };
   template <class Visit>
   void for_each_face_cell(int face, bool ghosts, const Visit& visit) const;

@@ -19,6 +19,7 @@ struct Physics {
 struct Diffusion {
   Real viscosity = 0;                         ///< Pa s
   Real conductivity = 0;                      ///< cp/Pr, times mu: W/m/K
+  Real fastest = 0, fastest_t = 0;            ///< of the stable step: 2 gamma/Pr, 2 gamma/Pr_t
   Real conductivity_t = 0;                    ///< cp/Pr_t, times mu_t
   Real sigma_k = 1, sigma_e = 1;              ///< outer
   Real inner_sigma_k = 0, inner_sigma_e = 0;  ///< inner - outer

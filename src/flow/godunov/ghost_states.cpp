@@ -118,7 +118,7 @@ Primitive inlet_total_pressure(const GasConstants& gas, double total_pressure, d
 }
 
 GhostStates ghost_states(const Condition& condition, const GasConstants& gas, const Primitive& first,
-                         const Primitive& second, const Primitive& outside, Real remembered) {
+                         const Primitive& second, const Primitive& outside, Real anchor) {
   switch (condition.type) {
     case BoundaryType::wall:
     case BoundaryType::moving_wall:
@@ -142,7 +142,7 @@ GhostStates ghost_states(const Condition& condition, const GasConstants& gas, co
       return {g, g};
     }
     case BoundaryType::wave_transmissive: {
-      const Primitive g = open_to(gas, first, outside, remembered);
+      const Primitive g = open_to(gas, first, outside, first.p + anchor * (outside.p - first.p));
       return {g, g};
     }
     case BoundaryType::slip:

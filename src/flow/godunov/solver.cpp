@@ -33,9 +33,9 @@ struct RateKernel {
     const std::ptrdiff_t o = w.offset(i, j, k);
     const Real rho = w.at(kRho, o), c = std::sqrt(gas.sound_speed_squared(rho, w.at(kP, o)));
     const Real hx = inv_width[0][i], hy = inv_width[1][j], hz = inv_width[2][k];
-    const Real nu = (diffusion.viscosity + eddy_viscosity[o]) / rho;
+    const Real nu = (diffusion.fastest * diffusion.viscosity + diffusion.fastest_t * eddy_viscosity[o]) / rho;
     return (std::abs(w.at(kU, o)) + c) * hx + (std::abs(w.at(kV, o)) + c) * hy +
-           (std::abs(w.at(kW, o)) + c) * hz + 4 * nu * (hx * hx + hy * hy + hz * hz);
+           (std::abs(w.at(kW, o)) + c) * hz + nu * (hx * hx + hy * hy + hz * hz);
   }
 };
 
@@ -60,6 +60,9 @@ Solver::Solver(const Grid& grid, const Options& options)
   diffusion_.viscosity = Real(options.viscosity);
   diffusion_.conductivity = Real(options.viscosity * cp / options.prandtl);
   diffusion_.conductivity_t = Real(cp / options.prandtl_turbulent);
+  // Explicit diffusion is stable for dt <= h^2/(2 nu); heat diffuses fastest, with gamma/Pr of the momentum.
+  diffusion_.fastest = Real(2.0 * options.gas.gamma / options.prandtl);
+  diffusion_.fastest_t = Real(2.0 * options.gas.gamma / options.prandtl_turbulent);
   set_turbulence_constants();
 }
 
@@ -150,7 +153,6 @@ void Solver::run_stages(double dt) {
 }
 
 void Solver::advance(double dt) {
-  boundaries_.listen(w_, dt);
   const bool across = grid_.active(1), viscous = options_.viscosity > 0.0;
   const bool turbulent = options_.turbulence != TurbulenceModel::laminar;
   if (turbulent) {

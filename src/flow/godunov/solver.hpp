@@ -46,7 +46,6 @@ class Solver {
   /// the reference.
   const Block& flux(int axis) const { return axis == 0 ? fx_ : axis == 1 ? fy_ : fz_; }
   const Field& eddy_viscosity() const { return eddy_viscosity_; }  ///< Pa s
-  /// Raw fields of a checkpoint: conserved and primitive components and the boundaries' memory.
   Block& conserved() { return u_; }
 
  private:

@@ -60,7 +60,8 @@ Incompressible::Incompressible(const Grid& grid, std::array<Boundary, 6> boundar
       boundaries_(grid, boundaries),
       poisson_(grid, poisson_boundaries(boundaries)),
       p_(grid.make_field()),
-      phi_(grid.make_field()) {
+      phi_(grid.make_field()),
+      solid_(grid.make_field()) {
   check_periodic(grid, boundaries);
   for (auto* group : {&u_, &u_old_, &u_star_, &q_})
     for (Field& f : *group) f = grid.make_field();

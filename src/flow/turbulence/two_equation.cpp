@@ -145,7 +145,7 @@ void transport(const Grid& grid, const ScalarFlux<kSst>& face, const std::array<
         } else {
           using namespace k_epsilon;
           const Real longest = longest_time(std::sqrt(strain2));
-          const Real rate = s0 / k0, produced = nut * strain2;
+          const Real rate = s0 / k0, own_rate = std::max(rate, Real(1) / longest), produced = nut * strain2;
           Real gain = kC1 * produced, loss = kC2;
           if constexpr (kRound) {
             const Real pope = kC3 * pope_chi(k0, s0, vortex_stretching(v), longest);
@@ -153,7 +153,7 @@ void transport(const Grid& grid, const ScalarFlux<kSst>& face, const std::array<
             loss += std::max(-pope, Real(0));
           }
           k1 = (k_carried + dt * produced) / (Real(1) + dt * rate);
-          s1 = (s_carried + dt * rate * gain) / (Real(1) + dt * loss * rate);
+          s1 = (s_carried + dt * own_rate * gain) / (Real(1) + dt * loss * own_rate);
         }
         k1 = std::max(k1, kMinimalK);
         s1 = std::max(s1, kMinimalSecond);
