@@ -29,7 +29,7 @@ def plot_slice(axes, run, time):
     frame = min(frames, key=lambda f: abs(f.time - time))
     air = frame.slices[0]
     image = axes.pcolormesh(air.first * 1e3, air.second * 1e3, air.speed, cmap="viridis", shading="nearest")
-    pyplot.colorbar(image, ax=axes, label="air speed [m/s]")
+    pyplot.colorbar(image, ax=axes, label="air speed [m/s]", shrink=0.6)
     across = [d for d in range(3) if d != air.axis]
     for body, pose in zip(header["bodies"], frame.poses):
         corners = body["vertices"] @ ejecta_run.rotation(pose[3:]).T + pose[:3]

@@ -40,7 +40,7 @@ export function words(key: string): string {
 
 /** The unit at the end of a key of result.json: "air_kinetic_energy_J" -> "Air kinetic energy [J]". */
 export function labelOf(key: string): string {
-  const found = /^(.+)_(rad_s|m_s|N_s|N_m|kg|Pa|J|N|K|W|m|s)$/.exec(key);
+  const found = /^(.+?)_(rad_s|m_s|N_s|N_m|kg|Pa|J|N|K|W|m|s)$/.exec(key);
   if (!found) return words(key);
   const unit = { rad_s: "rad/s", m_s: "m/s", N_s: "N\u00b7s", N_m: "N\u00b7m" }[found[2]!] ?? found[2]!;
   return `${words(found[1]!)} [${unit}]`;

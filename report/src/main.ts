@@ -101,7 +101,7 @@ function page(runs: Run[]): HTMLElement {
   add("jet", "Jet", "", grid([...profileCharts(runs), ...seriesCharts(runs, player, (n) => n.startsWith("probe-"))]));
   add("expected", "Expected values", "", ...runs.map(expectationTable));
   add("books", "Books and cost", "What goes in minus what comes out, relative to what went through; and where the time went.",
-    h("div", { class: "columns" }, costTable(runs), ledgerTable(runs)), ...runs.map(operatorTable),
+    runs.some((run) => run.result) ? h("div", { class: "columns" }, costTable(runs), ledgerTable(runs)) : null, ...runs.map(operatorTable),
     grid(seriesCharts(runs, player, (n) => !/^(body|line|probe)-/.test(n))));
   add("assumptions", "Assumptions", "Taken for granted by this run; each can be changed in the case file.", ...runs.map(assumptionList));
   add("provenance", "Provenance", "", provenanceTable(runs), ...runs.filter((run) => run.caseText).map(caseFile),

@@ -64,7 +64,8 @@ function chartsOfBody(name: string, runs: Run[], player: Player): HTMLElement {
           dashed: r > 0,
         }];
       }));
-    if (series.length === 0) continue;
+    const silent = series.every((s) => Array.prototype.every.call(s.values, (v) => !v));
+    if (series.length === 0 || (silent && prefix === "contact_force")) continue;
     const shown = inReadableUnit(series, unit);
     grid.append(chart({
       title, xLabel: "time [ms]", yLabel: axisLabel(prefix.replace("_", " "), shown.unit), x, series: shown.series, player,

@@ -63,7 +63,7 @@ function table(head: string[], rows: (string | Node)[][], numeric: number[] = []
 }
 
 /** Key figures of the computation. */
-export function costTable(runs: Run[]): HTMLElement {
+export function costTable(runs: Run[]): HTMLElement | null {
   const figures: [key: string, label: string, text: (v: number) => string][] = [
     ["cells", "Cells", thousands],
     ["steps", "Steps", thousands],
@@ -84,7 +84,15 @@ export function costTable(runs: Run[]): HTMLElement {
       const value = run.result?.[key];
       return h("span", { "data-run": r, "data-pointer": `/${key}` }, value === undefined || value === null ? "\u2013" : text(value as number));
     })]);
+  if (rows.length === 0) return null;
   return table(["Run", ...runs.map((run) => run.name)], rows, runs.map((_, n) => n + 1));
+}
+
+/** A number, or the components of a vector. */
+function numbersText(value: Json | undefined): string {
+  if (isNumber(value)) return short(value, 2);
+  if (Array.isArray(value) && value.every(isNumber)) return `(${value.map((v) => short(v, 2)).join(", ")})`;
+  return "\u2013";
 }
 
 /** Conservation: how well the books close. */
@@ -93,7 +101,7 @@ export function ledgerTable(runs: Run[]): HTMLElement | null {
   if (keys.length === 0) return null;
   const rows = keys.map((key) => [labelOf(key.replace(/_relative_residual$/, ", relative residual")), ...runs.map((run, r) => {
     const value = ((run.result?.["ledger"] ?? {}) as JsonObject)[key];
-    return h("span", { "data-run": r, "data-pointer": `/ledger/${key}` }, isNumber(value) ? short(value, 2) : "\u2013");
+    return h("span", { "data-run": r, "data-pointer": `/ledger/${key}` }, numbersText(value));
   })]);
   return table(["Ledger", ...runs.map((run) => run.name)], rows, runs.map((_, n) => n + 1));
 }

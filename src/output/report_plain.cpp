@@ -11,7 +11,15 @@ namespace {
 
 using nlohmann::ordered_json;
 
+/// Lists of more plain values than this are counted, not shown.
+constexpr std::size_t kLongest = 6;
+
 void add_rows(std::string& html, const std::string& key, const ordered_json& value) {
+  if (value.size() > kLongest && value.is_array() && !value.front().is_structured()) {
+    html +=
+        fmt::format("<tr><th scope=\"row\">{}</th><td>{} values</td></tr>\n", xml_escaped(key), value.size());
+    return;
+  }
   if (value.is_structured()) {
     for (const auto& [name, child] : value.items())
       add_rows(html, key.empty() ? name : key + '/' + name, child);

@@ -42,7 +42,8 @@ RunDirectory small_run(const std::filesystem::path& path) {
   run.write_manifest({{"version", "1"}});
   run.write_case("# </script><b>&\n");
   run.write_result(
-      {{"bodies", {{{"name", "cube"}, {"outcome", "ejected"}, {"clearance_at_splitter_m", 0.0123}}}}});
+      {{"bodies", {{{"name", "cube"}, {"outcome", "ejected"}, {"clearance_at_splitter_m", 0.0123}}}},
+       {"profile", {1, 2, 3, 4, 5, 6, 7}}});
   HistoryFile(run.history("body-cube"), {}, {{"x", "m"}}).add(0.0, std::vector{1.5});
   ReplayFile(run.replay(), header()).add(frame_at(0.0));
   return run;
@@ -114,6 +115,7 @@ TEST(PlainReport, ShowsVerdictAndNumbers) {
   const std::string html = plain_report(report_json(std::span(&path, 1)));
   EXPECT_THAT(html, HasSubstr("12.3 mm above"));
   EXPECT_THAT(html, HasSubstr("bodies/0/clearance_at_splitter_m</th><td>0.0123"));
+  EXPECT_THAT(html, HasSubstr("profile</th><td>7 values"));
 }
 
 TEST(Verdict, OneSentenceForEveryKindOfRun) {
