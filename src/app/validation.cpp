@@ -8,6 +8,7 @@
 
 #include "app/exit_code.hpp"
 #include "base/error.hpp"
+#include "base/text.hpp"
 #include "case/load.hpp"
 
 namespace ejecta {
@@ -57,6 +58,23 @@ Comparison compare(const ExpectSpec& e, const nlohmann::json& result) {
   c.pass = std::isfinite(computed) && (!e.tolerance || std::abs(difference) <= *e.tolerance) &&
            (!e.relative_tolerance || std::abs(difference) <= *e.relative_tolerance * std::abs(e.reference)) &&
            (!e.at_least || computed >= *e.at_least) && (!e.at_most || computed <= *e.at_most);
+  return c;
+}
+
+Comparison compare_series(const ExpectSpec& e, const std::vector<nlohmann::json>& results) {
+  Comparison c = compare(e, results.back());
+  std::vector<double> values;
+  for (const nlohmann::json& r : results) {
+    const nlohmann::json::json_pointer pointer(e.quantity);
+    if (!r.contains(pointer) || !r.at(pointer).is_number()) return c;
+    values.push_back(r.at(pointer).get<double>());
+  }
+  std::vector<std::string> words;
+  for (double v : values) words.push_back(fmt::format("{:.5g}", v));
+  c.series = joined(words, " -> ");
+  if (e.converging)
+    for (std::size_t i = 2; i < values.size(); ++i)
+      c.pass = c.pass && std::abs(values[i] - values[i - 1]) < std::abs(values[i - 1] - values[i - 2]);
   return c;
 }
 
@@ -115,8 +133,9 @@ void run_and_compare(const std::string& path, const RunOptions& options, const R
     if (v.exit_code != exit_done) return;
     results.push_back(read_result(one.out));
   }
-  const nlohmann::json result = series ? with_orders(results, factors) : results.front();
-  for (const ExpectSpec& e : c.expects) v.comparisons.push_back(compare(e, result));
+  if (series) results.back() = with_orders(results, factors);
+  for (const ExpectSpec& e : c.expects)
+    v.comparisons.push_back(series ? compare_series(e, results) : compare(e, results.front()));
 }
 
 }  // namespace
@@ -150,9 +169,11 @@ std::string validation_table(const std::vector<Validation>& list) {
                         v.exit_code == exit_done
                             ? ""
                             : fmt::format(": failed with exit code {}\n{}", v.exit_code, v.message));
-    for (const Comparison& c : v.comparisons)
+    for (const Comparison& c : v.comparisons) {
       text += fmt::format("  {:<42} {:>14} {:>16} {:>11}  {:<4}  {}\n", c.quantity, c.computed, c.reference,
                           c.error, c.pass ? "yes" : "NO", c.source);
+      if (!c.series.empty()) text += fmt::format("    grid by grid: {}\n", c.series);
+    }
   }
   return text + fmt::format("{} of {} cases pass\n", static_cast<int>(list.size()) - failed, list.size());
 }

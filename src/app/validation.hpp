@@ -13,10 +13,15 @@ namespace ejecta {
 /// One [[expect]] against one result.
 struct Comparison {
   std::string quantity, computed, reference, error, source;
+  std::string series{};  ///< the values on successive grids, if there are several
   bool pass = false;
 };
 /// Every criterion that is given must hold; a missing quantity, null or NaN never passes.
 Comparison compare(const ExpectSpec& expect, const nlohmann::json& result);
+
+/// The same against the results of successive grids, coarse first: the finest is compared, and its change
+/// from grid to grid must shrink where the expectation says so.
+Comparison compare_series(const ExpectSpec& expect, const std::vector<nlohmann::json>& results);
 
 /// The case with the cells of every axis times `factor` (an axis of one cell stays) and, if [convergence]
 /// says so, a fixed time step divided by it. Throws InputError when a block would not get a whole number of

@@ -289,7 +289,8 @@ struct ExpectSpec {
   std::optional<double> tolerance;  ///< absolute
   std::optional<double> relative_tolerance;
   std::optional<double> at_least, at_most;
-  std::string text;  ///< expected string instead of a number
+  bool converging = false;  ///< with [convergence]: from grid to grid the value must change less
+  std::string text;         ///< expected string instead of a number
   std::string source;
 };
 

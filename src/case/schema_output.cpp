@@ -131,6 +131,8 @@ std::vector<Key> keys(ExpectSpec& s) {
            "none"},
           {"at_least", &s.at_least, none, anything, "Lower limit", "", "none"},
           {"at_most", &s.at_most, none, anything, "Upper limit", "", "none"},
+          {"converging", &s.converging, none, anything,
+           "With [convergence]: from grid to grid the value must change less", ""},
           {.name = "text",
            .slot = &s.text,
            .help = "Expected words, e.g. an outcome, instead of a number",

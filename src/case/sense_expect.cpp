@@ -12,12 +12,15 @@ void sense_expectations(const Case& c, Findings& found) {
     if (!e.quantity.starts_with('/'))
       found.error(key + ".quantity", "not a JSON pointer", "a path that starts with /",
                   "quantity = \"/bodies/0/drag_coefficient\"");
-    const bool number = e.tolerance || e.relative_tolerance || e.at_least || e.at_most;
+    const bool number = e.tolerance || e.relative_tolerance || e.at_least || e.at_most || e.converging;
     if (!number && e.text.empty())
       found.error(key, "nothing to compare with", "tolerance, relative_tolerance, at_least, at_most or text",
                   "reference = 1.087, relative_tolerance = 0.03");
     if (number && !e.text.empty())
       found.error(key + ".text", "a text and a number at once", "one of the two");
+    if (e.converging && c.convergence.factors.size() < 3)
+      found.error(key + ".converging", "it takes three grids to see that changes shrink",
+                  "at least three convergence.factors", "factors = [1, 2, 4]");
     if (e.relative_tolerance && e.reference == 0.0)
       found.error(key + ".relative_tolerance", "a relative tolerance about the reference 0 allows nothing",
                   "an absolute tolerance", "tolerance = 0.01");

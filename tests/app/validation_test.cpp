@@ -70,6 +70,20 @@ TEST(Compare, WhatIsMissingNullOrNanNeverPasses) {
   EXPECT_FALSE(compare(at_most("/a", 1.0), {{"a", std::nan("")}}).pass);
 }
 
+TEST(Compare, ASeriesShowsEveryGridAndMustShrinkItsChangesIfAsked) {
+  const auto grids = [](std::vector<double> values) {
+    std::vector<nlohmann::json> list;
+    for (double v : values) list.push_back({{"drag", v}});
+    return list;
+  };
+  ExpectSpec e = at_most("/drag", 2.0);
+  e.converging = true;
+  EXPECT_TRUE(compare_series(e, grids({1.4, 1.2, 1.1})).pass);
+  EXPECT_EQ(compare_series(e, grids({1.4, 1.2, 1.1})).series, "1.4 -> 1.2 -> 1.1");
+  EXPECT_FALSE(compare_series(e, grids({1.4, 1.3, 1.1})).pass);
+  EXPECT_FALSE(compare_series(e, grids({2.4, 2.2, 2.1})).pass) << "the limit still holds";
+}
+
 TEST(Refined, CellsTimesTheFactorAndTheStepDividedByIt) {
   Case c;
   c.grid.axis[0] = {{0, 1, 2}, {10, 20}, {}};
