@@ -77,7 +77,8 @@ std::string run_json(const fs::path& directory) {
   for (const fs::path& path : files_in(directory / "history", ".csv"))
     json["history"][path.stem().string()] = history_json(path);
   // The frames are JSON already; taking them as they are keeps a long replay out of the parser.
-  std::string text = json.dump();
+  // A case file may hold bytes that are no UTF-8.
+  std::string text = json.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
   text.pop_back();
   text += ",\"replay\":[";
   const std::vector<std::string> lines = read_replay_lines(run.replay());

@@ -30,6 +30,11 @@ bool holds_no_file(const fs::path& path, std::error_code& failed) {
   return true;
 }
 
+/// Names and paths may hold bytes that are no UTF-8; they must not cost the result.
+std::string json_text(const nlohmann::ordered_json& json) {
+  return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+}
+
 void check_finite(const nlohmann::ordered_json& value, const std::string& key) {
   if (value.is_number_float() && !std::isfinite(value.get<double>()))
     throw DivergedError(fmt::format("the result {} is {}", key, value.get<double>()));
@@ -85,12 +90,12 @@ fs::path RunDirectory::history(std::string_view name) const {
 void RunDirectory::write_case(std::string_view toml) const { write_file(path_ / "case.toml", toml); }
 
 void RunDirectory::write_manifest(const nlohmann::ordered_json& manifest) const {
-  write_file(path_ / "manifest.json", manifest.dump(2) + '\n');
+  write_file(path_ / "manifest.json", json_text(manifest) + '\n');
 }
 
 void RunDirectory::write_result(const nlohmann::ordered_json& result) const {
   check_finite(result, "");
-  write_file(path_ / "result.json", result.dump(2) + '\n');
+  write_file(path_ / "result.json", json_text(result) + '\n');
 }
 
 }  // namespace ejecta::output

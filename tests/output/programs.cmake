@@ -24,12 +24,15 @@ function(ejecta_program_test name program)
   set_tests_properties(${name} PROPERTIES SKIP_RETURN_CODE 77 TIMEOUT 300 LABELS "fast;output")
 endfunction()
 
-ejecta_program_test(output.paraview "${PVPYTHON}" --force-offscreen-rendering ${sources}/paraview/paraview_test.py ${sample})
+ejecta_program_test(output.paraview "${PVPYTHON}" --force-offscreen-rendering ${sources}/paraview/paraview_test.py ${sample}
+                    ${CMAKE_BINARY_DIR}/tests/killed.run)
 ejecta_program_test(output.python "${python}" ${sources}/output/python_reader_test.py ${PROJECT_SOURCE_DIR}/python
                     ${sample} ${CMAKE_BINARY_DIR}/tests/sample.png)
 set_tests_properties(output.paraview output.python PROPERTIES FIXTURES_REQUIRED sample_run)
 ejecta_program_test(output.killed "${python}" ${sources}/output/kill_test.py ${PROJECT_SOURCE_DIR}/python
                     $<TARGET_FILE:make_sample_run> ${CMAKE_BINARY_DIR}/tests/killed.run)
+set_tests_properties(output.killed PROPERTIES FIXTURES_SETUP killed_run RUN_SERIAL ON)
+set_tests_properties(output.paraview PROPERTIES FIXTURES_REQUIRED "sample_run;killed_run")
 
 # The report of one run, of two laid over each other, and of a jet without bodies.
 add_test(NAME output.sample_run_pushed COMMAND make_sample_run ${CMAKE_BINARY_DIR}/tests/pushed.run 3)

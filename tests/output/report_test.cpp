@@ -103,6 +103,14 @@ TEST(Report, TwoRunsAndARunWithoutResult) {
   EXPECT_TRUE(data["runs"][1]["result"].is_null());
 }
 
+TEST(Report, BytesThatAreNoTextDoNotCostTheReport) {
+  const ScratchDirectory dir;
+  const RunDirectory run = small_run(dir / "a.run");
+  run.write_case("# f\xfcr die Mine\n");
+  run.write_manifest({{"case", "f\xfcr.toml"}});
+  EXPECT_NO_THROW(write_report(run.path()));
+}
+
 TEST(Report, WhatIsNotARunIsRefused) {
   const ScratchDirectory dir;
   EXPECT_THROW(write_report(dir.path()), InputError);
