@@ -68,9 +68,9 @@ ShockStructure shock_structure(const Centreline& line) {
     }
   }
   for (std::size_t n = 1; n + 1 < s.size() && found.pressure_maxima.size() < 8; ++n) {
-    const bool behind_expansion = s[n].mach > 0.0 && line.z[n] > line.z[peak];
-    if (behind_expansion && s[n].pressure > s[n - 1].pressure && s[n].pressure >= s[n + 1].pressure &&
-        s[n].pressure > 1.02 * s.back().pressure)
+    // The rise right behind the disk belongs to the disk.
+    if (line.z[n] > 1.2 * found.mach_disk && line.z[n] > line.z[peak] && s[n].pressure > s[n - 1].pressure &&
+        s[n].pressure >= s[n + 1].pressure && s[n].pressure > 1.02 * s.back().pressure)
       found.pressure_maxima.push_back(line.z[n]);
   }
   if (!found.pressure_maxima.empty()) found.first_cell = found.pressure_maxima.front();

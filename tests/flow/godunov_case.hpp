@@ -1,0 +1,51 @@
+#pragma once
+#include <functional>
+#include <memory>
+
+#include "flow/godunov/solver.hpp"
+
+/// Short ways to set up the compressible solver in tests.
+namespace ejecta::test {
+
+inline Axis even_axis(double low, double high, int cells) { return make_axis({low, high}, {cells}, {}); }
+
+using GasAt = std::function<godunov::GasState(const Vec3&)>;
+
+struct Tube {
+  Grid grid;
+  godunov::Solver solver;
+  Tube(Axis x, Axis y, Axis z, bool axisymmetric, const godunov::Options& options)
+      : grid(std::move(x), std::move(y), std::move(z), axisymmetric), solver(grid, options) {}
+
+  void boundary(int face, BoundaryType type, const godunov::GasState& outside = {}) {
+    godunov::Condition c;
+    c.type = type;
+    c.state = outside;
+    solver.boundaries().set_face(face, c);
+  }
+  void all_boundaries(BoundaryType type) {
+    for (int f = 0; f < 6; ++f) boundary(f, type);
+  }
+  void fill(const GasAt& gas) {
+    for (int k = 0; k < grid.nz(); ++k)
+      for (int j = 0; j < grid.ny(); ++j)
+        for (int i = 0; i < grid.nx(); ++i) solver.set(i, j, k, gas(grid.centre(i, j, k)));
+  }
+  void run(double end, double courant) {
+    double t = 0.0;
+    while (t < end * (1.0 - 1e-12)) {
+      const double dt = std::min(solver.stable_dt(courant), end - t);
+      solver.advance(dt);
+      t += dt;
+    }
+  }
+};
+
+/// A tube along x (0), y (1) or z (2) of the unit length.
+inline std::unique_ptr<Tube> make_tube(int axis, int cells, const godunov::Options& options = {}) {
+  std::array<Axis, 3> a;
+  for (int d = 0; d < 3; ++d) a[static_cast<std::size_t>(d)] = even_axis(0, 1, d == axis ? cells : 1);
+  return std::make_unique<Tube>(a[0], a[1], a[2], false, options);
+}
+
+}  // namespace ejecta::test
