@@ -17,7 +17,7 @@ namespace ejecta {
 class FlowModel {
  public:
   virtual ~FlowModel() = default;
-  virtual double stable_dt(double time) const = 0;
+  virtual double stable_dt(double time) = 0;
   virtual double courant(double dt) const = 0;
   virtual void advance(double time, double dt, SolidMask& solids) = 0;
 

@@ -68,7 +68,7 @@ class IncompressibleModel : public FlowModel {
     initialise();
   }
 
-  double stable_dt(double time) const override {
+  double stable_dt(double time) override {
     double dt = std::min(flow_->stable_dt(case_.run.courant), case_.run.time_step_max);
     if (!jet_) return dt;
     // A jet that starts must not outrun the step that lets it in.

@@ -24,6 +24,10 @@ Json body_json(const CoupledModel& m, std::size_t b) {
   j["final_position_m"] = vector_json(body.position);
   j["final_velocity_m_s"] = vector_json(body.velocity);
   j["final_spin_rad_s"] = vector_json(body.angular_velocity);
+  const ContactPeaks& peaks = m.particles().peaks(static_cast<int>(b));
+  j["max_overlap_m"] = peaks.overlap;
+  j["max_contact_force_N"] = peaks.force;
+  j["contact_time_s"] = peaks.time;
   const Vec3& impulse = m.impulse()[b];
   // What the air did: gravity and contacts are not part of it.
   j["velocity_change_z_m_s"] = impulse.z() / body.mass;

@@ -61,7 +61,8 @@ Incompressible::Incompressible(const Grid& grid, std::array<Boundary, 6> boundar
       poisson_(grid, poisson_boundaries(boundaries)),
       p_(grid.make_field()),
       phi_(grid.make_field()),
-      solid_(grid.make_field()) {
+      solid_(grid.make_field()),
+      smoother_(grid) {
   check_periodic(grid, boundaries);
   for (auto* group : {&u_, &u_old_, &u_star_, &q_})
     for (Field& f : *group) f = grid.make_field();
@@ -131,8 +132,8 @@ struct Rates {
 
 }  // namespace
 
-double Incompressible::stable_dt(double courant) const {
-  const Rates r = {views(u_),
+double Incompressible::stable_dt(double courant) {
+  const Rates r = {std::as_const(*this).views(u_),
                    turbulence_ ? turbulence_->eddy_viscosity() : ConstFieldView{},
                    grid_.metrics(0),
                    grid_.metrics(1),
@@ -144,15 +145,19 @@ double Incompressible::stable_dt(double courant) const {
   // Heun's method is stable to -2 on the negative real axis, where upwinding reaches -2 sum |u| dt/h and
   // viscosity -4 nu sum dt/h2; k and epsilon, explicit Euler, stay positive under the same sum.
   const Real by_courant = static_cast<Real>(1.0 / courant);
-  const Real rate = turbulence_ ? reduce_max(grid_.range(), Real(0),
-                                             [=](int i, int j, int k) {
-                                               return by_courant * r.convection(i, j, k) +
-                                                      r.viscosity(i, j, k, r.nut(i, j, k));
-                                             })
-                                : reduce_max(grid_.range(), Real(0), [=](int i, int j, int k) {
-                                    return by_courant * r.convection(i, j, k) + r.viscosity(i, j, k, Real(0));
-                                  });
-  return 1.0 / std::max(double(rate), 1e-30);
+  if (!turbulence_)
+    return 1.0 / std::max(1e-30, double(reduce_max(grid_.range(), Real(0), [=](int i, int j, int k) {
+                            return by_courant * r.convection(i, j, k) + r.viscosity(i, j, k, Real(0));
+                          })));
+  // With eddies: beyond the explicit limit increments are smoothed, up to the convective limit.
+  explicit_dt_ =
+      1.0 / std::max(1e-30, double(reduce_max(grid_.range(), Real(0), [=](int i, int j, int k) {
+                       return by_courant * r.convection(i, j, k) + r.viscosity(i, j, k, r.nut(i, j, k));
+                     })));
+  largest_viscosity_ =
+      setup_.viscosity +
+      double(reduce_max(grid_.range(), Real(0), [=](int i, int j, int k) { return r.nut(i, j, k); }));
+  return courant / std::max(1e-30, this->courant(1.0));
 }
 
 double Incompressible::courant(double dt) const {
@@ -200,7 +205,17 @@ void Incompressible::predict(double a, double b, double time, Real dt) {
   t.a = static_cast<Real>(a);
   t.b = static_cast<Real>(b);
   t.dt = dt;
+  t.increment_only = smoothing_;
   predict_momentum(grid_, t);
+  if (!smoothing_) return;
+  for (int c = 0; c < 3; ++c) {
+    smoother_.apply(u_star_[c].view());
+    const Real wa = t.a, wb = t.b;
+    for_each_cell(grid_.range(),
+                  [=, out = u_star_[c].view(), old = t.old[c], now = t.u[c]](int i, int j, int k) {
+                    out(i, j, k) += wa * old(i, j, k) + wb * now(i, j, k);
+                  });
+  }
 }
 
 void Incompressible::force(SolidMask& solids, double weight) {
@@ -275,6 +290,9 @@ void Incompressible::advance(double time, double dt, SolidMask& solids) {
   solids.resize_scratch();
   for (const SolidCell& c : solids.cells) solid_(c.i, c.j, c.k) = c.weight;
   std::fill(solids.impulse.begin(), solids.impulse.end(), std::array<double, 3>{0, 0, 0});
+  smoothing_ = turbulence_ && dt > explicit_dt_;
+  if (smoothing_) smoother_.prepare(0.5 * dt * largest_viscosity_);
+
   predict(0.0, 1.0, time, h);
   book_boundaries(0.5, dt);
   force(solids, 0.5);
@@ -311,7 +329,8 @@ void Incompressible::advance(double time, double dt, SolidMask& solids) {
   if (turbulence_) {
     ScopedTimer timer(times_.turbulence);
     boundaries_.fill_velocity(views(u_), views(q_));
-    turbulence_->advance(boundaries_, std::as_const(*this).views(u_), views(q_), solids, h);
+    turbulence_->advance(boundaries_, std::as_const(*this).views(u_), views(q_), solids, h,
+                         smoothing_ ? &smoother_ : nullptr);
   }
 }
 

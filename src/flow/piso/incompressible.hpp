@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "flow/boundary.hpp"
+#include "flow/piso/increment_smoother.hpp"
 #include "flow/piso/momentum.hpp"
 #include "flow/poisson/fast_diagonal.hpp"
 #include "flow/solid_mask.hpp"
@@ -58,7 +59,7 @@ class Incompressible {
                   const std::function<double(const Vec3&)>& pressure, double time);
   /// The largest step for a Courant number (sum over directions of |u| dt / h, Eq. 6 of the paper) and for
   /// the explicit viscous terms.
-  double stable_dt(double courant) const;
+  double stable_dt(double courant);
   double courant(double dt) const;
   void advance(double time, double dt, SolidMask& solids);
 
@@ -104,8 +105,11 @@ class Incompressible {
   std::unique_ptr<TwoEquation> turbulence_;
   std::array<Field, 3> u_, u_old_, u_star_, q_, source_;
   Field p_, phi_;
-  Field solid_;                              // forcing weight of every cell during a step, else zero
-  std::vector<BoundaryFlow> boundary_sums_;  // scratch
+  Field solid_;  // forcing weight of every cell during a step, else zero
+  IncrementSmoother smoother_;
+  bool smoothing_ = false;
+  double explicit_dt_ = 1e300, largest_viscosity_ = 0;  // of the last stable_dt()
+  std::vector<BoundaryFlow> boundary_sums_;             // scratch
   double box_volume_ = 0, leak_ = 0;
   FlowTimes times_;
   FlowLedger ledger_;

@@ -82,7 +82,8 @@ void predict(const Grid& grid, const MomentumTerms& t) {
       const Real* source = t.source[c].origin ? t.source[c].row(j, k) : nullptr;
       const Real* b = balance[c];
       Real* out = t.out[c].row(j, k);
-      const Real dt = t.dt, wa = t.a, wb = t.b, acceleration = t.acceleration[c];
+      const Real dt = t.dt, wb = t.b, base_a = t.increment_only ? Real(0) : t.a,
+                 base_b = t.increment_only ? Real(0) : t.b, acceleration = t.acceleration[c];
       const Real inv_jk = m[1].inv_volume[j] * m[2].inv_volume[k];
       const std::ptrdiff_t s = stride(t.pressure, c);
       const bool active = grid.active(c);
@@ -95,7 +96,7 @@ void predict(const Grid& grid, const MomentumTerms& t) {
           Real rate = acceleration - b[i] * inv_volume[i] * inv_jk;
           if constexpr (with_pressure) rate -= pressure_gradient(p + i, s, mc, at);
           if constexpr (with_source) rate += source[i];
-          out[i] = wa * old[i] + wb * (now[i] + dt * rate);
+          out[i] = base_a * old[i] + base_b * now[i] + wb * dt * rate;
         });
       };
       using Yes = std::true_type;

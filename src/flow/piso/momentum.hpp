@@ -9,8 +9,9 @@ namespace ejecta {
 
 /// Views of one momentum predictor (paper Eq. 2 with constant density):
 ///
-///   out = a old + b (u + dt [ -div(q u) + div(2 nu_eff S) - grad p + acceleration + source ])
+///   base = a old + b u,   increment = b dt [ -div(q u) + div(2 nu_eff S) - grad p + acceleration + source ]
 ///
+/// out = base + increment, or the increment alone.
 /// Convection by limited second-order upwind values, full viscous stress. u and p have filled ghosts.
 struct MomentumTerms {
   std::array<ConstFieldView, 3> old, u;
@@ -22,6 +23,7 @@ struct MomentumTerms {
   std::array<Real, 3> acceleration{0, 0, 0};  ///< m/s2
   Real viscosity = 0;                         ///< nu, m2/s
   Real a = 0, b = 1, dt = 0;
+  bool increment_only = false;
 };
 
 void predict_momentum(const Grid& grid, const MomentumTerms& terms);

@@ -103,6 +103,7 @@ struct ScalarFlux {
 /// Where a transport step writes.
 struct ScalarOut {
   FieldView k, second, nut, f1;
+  bool unfinished;  ///< k and second will still be smoothed: nu_t is taken from what they are now
 };
 
 template <bool kSst, bool kRound>
@@ -123,6 +124,7 @@ void transport(const Grid& grid, const ScalarFlux<kSst>& face, const std::array<
     const GradientRow gradient = gradient_row(grid, u, j, k);
     const ProductRow product = product_row(grid, face.value[0], face.value[1], j, k);
     const int nx = grid.nx();
+    const bool unfinished = out.unfinished;
     const auto update = [=](auto axisymmetric) {
       GradientRow row = gradient;
       if constexpr (!axisymmetric) row.radius = nullptr;
@@ -159,15 +161,15 @@ void transport(const Grid& grid, const ScalarFlux<kSst>& face, const std::array<
         s1 = std::max(s1, kMinimalSecond);
         out_k[i] = k1;
         out_second[i] = s1;
-        const Real rate_of_strain = std::sqrt(strain2);
+        const Real rate_of_strain = std::sqrt(strain2), kn = unfinished ? k0 : k1, sn = unfinished ? s0 : s1;
         if constexpr (kSst) {
           using namespace k_omega_sst;
           const Real d = std::min(distance_x[i], distance_jk);
-          out_f1[i] = k_omega_sst::f1(k1, s1, nu, d, cross_diffusion(s0, product(i)));
-          out_nut[i] = std::min(eddy_viscosity(k1, s1, rate_of_strain, f2(k1, s1, nu, d)), most);
+          out_f1[i] = k_omega_sst::f1(kn, sn, nu, d, cross_diffusion(s0, product(i)));
+          out_nut[i] = std::min(eddy_viscosity(kn, sn, rate_of_strain, f2(kn, sn, nu, d)), most);
         } else {
           out_nut[i] =
-              std::min(k_epsilon::eddy_viscosity(k1, s1, k_epsilon::longest_time(rate_of_strain)), most);
+              std::min(k_epsilon::eddy_viscosity(kn, sn, k_epsilon::longest_time(rate_of_strain)), most);
         }
       });
     };
@@ -220,6 +222,15 @@ void TwoEquation::measure_walls(const Boundaries& b) {
   }
 }
 
+/// now + smoothed (next - now), not below `least`.
+void TwoEquation::smooth(const IncrementSmoother& smoother, ConstFieldView now, FieldView next,
+                         Real least) const {
+  for_each_cell(grid_.range(), [=](int i, int j, int k) { next(i, j, k) -= now(i, j, k); });
+  smoother.apply(next);
+  for_each_cell(grid_.range(),
+                [=](int i, int j, int k) { next(i, j, k) = std::max(now(i, j, k) + next(i, j, k), least); });
+}
+
 /// Equilibrium values in the cells next to walls and the wall's eddy viscosity in the ghosts (Launder &
 /// Spalding 1974).
 void TwoEquation::apply_walls() {
@@ -253,11 +264,13 @@ void TwoEquation::apply_walls() {
 }
 
 void TwoEquation::advance(const Boundaries& b, const std::array<ConstFieldView, 3>& u,
-                          const std::array<FieldView, 3>& q, const SolidMask& solids, Real dt) {
+                          const std::array<FieldView, 3>& q, const SolidMask& solids, Real dt,
+                          const IncrementSmoother* smoother) {
   if (wall_distance_[0].empty()) measure_walls(b);
   b.fill_turbulence(k_.view(), second_.view(), q);
   const std::array<ConstFieldView, 3> faces{q[0], q[1], q[2]};
-  const ScalarOut out{k_new_.view(), second_new_.view(), nut_new_.view(), f1_new_.view()};
+  const ScalarOut out{k_new_.view(), second_new_.view(), nut_new_.view(), f1_new_.view(),
+                      smoother != nullptr};
   const auto run = [&](auto sst, auto round) {
     const ScalarFlux<sst> face{{k_.view(), second_.view()},
                                nut_.view(),
@@ -271,6 +284,10 @@ void TwoEquation::advance(const Boundaries& b, const std::array<ConstFieldView, 
   if (model_ == TwoEquationModel::k_omega_sst) run(std::true_type{}, std::false_type{});
   else if (round_jet_) run(std::false_type{}, std::true_type{});
   else run(std::false_type{}, std::false_type{});
+  if (smoother) {
+    smooth(*smoother, k_.view(), k_new_.view(), kMinimalK);
+    smooth(*smoother, second_.view(), second_new_.view(), kMinimalSecond);
+  }
   std::swap(k_, k_new_);
   std::swap(second_, second_new_);
   std::swap(nut_, nut_new_);

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "flow/boundary.hpp"
+#include "flow/piso/increment_smoother.hpp"
 #include "flow/solid_mask.hpp"
 #include "grid/grid.hpp"
 
@@ -22,7 +23,7 @@ class TwoEquation {
 
   /// One step; u and q are the velocities at its end, with filled ghosts. dt = 0 only sets nu_t.
   void advance(const Boundaries& b, const std::array<ConstFieldView, 3>& u, const std::array<FieldView, 3>& q,
-               const SolidMask& solids, Real dt);
+               const SolidMask& solids, Real dt, const IncrementSmoother* smoother = nullptr);
 
   ConstFieldView eddy_viscosity() const { return nut_.view(); }
   const Field& k() const { return k_; }
@@ -32,6 +33,7 @@ class TwoEquation {
 
  private:
   void apply_walls();
+  void smooth(const IncrementSmoother& smoother, ConstFieldView now, FieldView next, Real least) const;
   void measure_walls(const Boundaries& b);
 
   const Grid& grid_;
