@@ -35,6 +35,22 @@ Touch touch_ball_polytope(const BallRow& ball, const Polytope& solid, const Mat3
   return t;
 }
 
+Touch touch_ball_facet(const BallRow& ball, const Facet& f) {
+  const TrianglePoint nearest = nearest_on_triangle(ball.centre(), f.corners[0], f.corners[1], f.corners[2]);
+  const Vec3 out = ball.centre() - nearest.point;
+  const double height = f.normal.dot(out);
+  if (!f.owns[static_cast<std::size_t>(nearest.feature)] || height < -f.thickness) return {};
+  const bool face = nearest.feature == TriangleFeature::face;
+  const double distance = face ? height : out.norm();
+  if (!(distance < ball.radius) || (!face && !(height > 0))) return {};
+  Touch t;
+  t.normal = face ? f.normal : Vec3(out / distance);
+  t.overlap = ball.radius - distance;
+  t.radius = t.size = ball.radius;
+  t.point = ball.centre() - (ball.radius - 0.5 * t.overlap) * t.normal;
+  return t;
+}
+
 /// An elastic foundation: pressure in proportion to thickness, so that the force is a constant times the
 /// shared volume V and acts at its centroid, along the vector area. That is the gradient of an energy and
 /// changes without a jump between face, edge and corner. The constant is chosen so that a face of the area pi
@@ -68,9 +84,12 @@ Touch find_touch(const SolidPair& pair, const Parts& parts, std::span<const Body
   if (pair.a.kind == PartKind::ball) {
     const BallRow& ball = parts.row(pair.a.index);
     if (pair.b.kind == PartKind::wall_plane) return touch_ball_plane(ball, wall_of(pair.b));
-    if (pair.b.kind == PartKind::wall_solid)
-      return touch_ball_polytope(ball, wall_of(pair.b).solids[static_cast<std::size_t>(pair.b.solid)],
-                                 Mat3::Identity(), Vec3(0, 0, 0));
+    if (pair.b.kind == PartKind::wall_solid) {
+      const Wall& wall = wall_of(pair.b);
+      const std::size_t n = static_cast<std::size_t>(pair.b.solid);
+      return wall.facets.empty() ? touch_ball_polytope(ball, wall.solids[n], Mat3::Identity(), Vec3(0, 0, 0))
+                                 : touch_ball_facet(ball, wall.facets[n]);
+    }
     const Body& other = body_of(pair.body_b);
     return touch_ball_polytope(ball, *parts.polytope(pair.b.index).solid,
                                other.orientation.toRotationMatrix(), other.position);
@@ -85,10 +104,16 @@ Touch find_touch(const SolidPair& pair, const Parts& parts, std::span<const Body
                     turn, body.position);
   }
   if (pair.b.kind == PartKind::wall_solid) {
-    const Polytope& solid = wall_of(pair.b).solids[static_cast<std::size_t>(pair.b.solid)];
-    return touch_of(
-        overlap_polytopes(*part.solid, solid, turn.transpose(), -(turn.transpose() * body.position)),
-        part.radius, turn, body.position);
+    const Wall& wall = wall_of(pair.b);
+    const std::size_t n = static_cast<std::size_t>(pair.b.solid);
+    Overlap o =
+        overlap_polytopes(*part.solid, wall.solids[n], turn.transpose(), -(turn.transpose() * body.position));
+    if (!wall.facets.empty()) {
+      // The sides of a prism are no surface: only its face pushes.
+      const Vec3 face = turn.transpose() * wall.facets[n].normal;
+      o.area = std::max(o.area.dot(face), 0.0) * face;
+    }
+    return touch_of(o, part.radius, turn, body.position);
   }
   const PolytopePart& other_part = parts.polytope(pair.b.index);
   const Body& other = body_of(pair.body_b);

@@ -64,7 +64,9 @@ Wall make_wall(const WallSpec& spec, const Materials& materials, const std::stri
     if (spec.kind == WallKind::mesh) {
       const std::string path = (std::filesystem::path(directory) / spec.file).string();
       const double thickness = spec.size.z() > 0 ? spec.size.z() : 1e-3;
-      wall.solids = prisms(read_stl(path, 1.0), thickness, path);
+      const TriangleMesh mesh = read_stl(path, 1.0);
+      wall.solids = prisms(mesh, thickness, path);
+      wall.facets = make_facets(mesh, thickness);
       return wall;
     }
     require_size(spec.size);

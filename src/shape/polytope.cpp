@@ -45,23 +45,24 @@ TriangleMesh triangles_of(const Polytope& p) {
   return mesh;
 }
 
-Vec3 nearest_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
+TrianglePoint nearest_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
+  using enum TriangleFeature;
   const Vec3 ab = b - a, ac = c - a, ap = p - a;
   const double d1 = ab.dot(ap), d2 = ac.dot(ap);
-  if (d1 <= 0 && d2 <= 0) return a;
+  if (d1 <= 0 && d2 <= 0) return {a, corner_a};
   const Vec3 bp = p - b;
   const double d3 = ab.dot(bp), d4 = ac.dot(bp);
-  if (d3 >= 0 && d4 <= d3) return b;
+  if (d3 >= 0 && d4 <= d3) return {b, corner_b};
   const double vc = d1 * d4 - d3 * d2;
-  if (vc <= 0 && d1 >= 0 && d3 <= 0) return a + d1 / (d1 - d3) * ab;
+  if (vc <= 0 && d1 >= 0 && d3 <= 0) return {a + d1 / (d1 - d3) * ab, edge_ab};
   const Vec3 cp = p - c;
   const double d5 = ab.dot(cp), d6 = ac.dot(cp);
-  if (d6 >= 0 && d5 <= d6) return c;
+  if (d6 >= 0 && d5 <= d6) return {c, corner_c};
   const double vb = d5 * d2 - d1 * d6;
-  if (vb <= 0 && d2 >= 0 && d6 <= 0) return a + d2 / (d2 - d6) * ac;
+  if (vb <= 0 && d2 >= 0 && d6 <= 0) return {a + d2 / (d2 - d6) * ac, edge_ca};
   const double va = d3 * d6 - d5 * d4;
-  if (va <= 0 && d4 >= d3 && d5 >= d6) return b + (d4 - d3) / (d4 - d3 + d5 - d6) * (c - b);
-  return a + (vb * ab + vc * ac) / (va + vb + vc);
+  if (va <= 0 && d4 >= d3 && d5 >= d6) return {b + (d4 - d3) / (d4 - d3 + d5 - d6) * (c - b), edge_bc};
+  return {a + (vb * ab + vc * ac) / (va + vb + vc), face};
 }
 
 NearestPoint nearest_on_polytope(const Polytope& p, const Vec3& point) {
@@ -77,7 +78,7 @@ NearestPoint nearest_on_polytope(const Polytope& p, const Vec3& point) {
     const double d = f.normal.dot(point) - f.offset;
     if (d <= 0 || d * d >= best) continue;  // a face seen from behind is never the nearest
     for (int n = 1; n + 1 < f.count; ++n) {
-      const Vec3 q = nearest_on_triangle(point, corner(p, f, 0), corner(p, f, n), corner(p, f, n + 1));
+      const Vec3 q = nearest_on_triangle(point, corner(p, f, 0), corner(p, f, n), corner(p, f, n + 1)).point;
       const double d2 = (point - q).squaredNorm();
       if (d2 < best) {
         best = d2;

@@ -29,8 +29,13 @@ Polytope moved(const Polytope& p, const Mat3& rotation, const Vec3& translation)
 /// Fan triangles of its faces.
 TriangleMesh triangles_of(const Polytope& p);
 
+enum class TriangleFeature { face, edge_ab, edge_bc, edge_ca, corner_a, corner_b, corner_c };
+struct TrianglePoint {
+  Vec3 point{0, 0, 0};
+  TriangleFeature feature = TriangleFeature::face;  ///< where on the triangle it lies
+};
 /// The point of a closed triangle nearest to p (Ericson 2005, Real-Time Collision Detection, 5.1.5).
-Vec3 nearest_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c);
+TrianglePoint nearest_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c);
 
 struct NearestPoint {
   double distance = 0.0;  ///< signed, m
