@@ -51,6 +51,13 @@ JetModel::JetModel(const Case& c)
     throw InputError(
         fmt::format("the pulse ends at {:.4g} ms, after the simulated time run.end_time of {:.4g} ms",
                     1e3 * (c.valve.opens_at + c.valve.delay + c.valve.duration), 1e3 * c.run.end_time));
+  const double flowing = 0.5 * orifice_diameter() * std::sqrt(c.valve.discharge_coefficient);
+  if (std::abs(inlets_[0].radius - flowing) > 1e-3 * flowing)
+    throw InputError(fmt::format(
+        "boundary.z_min.patch.0.radius is {:.4g} mm, but what flows through valve.orifice_diameter = {:.4g} "
+        "mm with "
+        "valve.discharge_coefficient = {:.3g} is a disc of radius {:.4g} mm",
+        1e3 * inlets_[0].radius, 1e3 * orifice_diameter(), c.valve.discharge_coefficient, 1e3 * flowing));
   for (int d = 0; d < 2; ++d)
     if (!grid_.axisymmetric() && grid_.active(d) && std::abs(grid_.lower()[d] - inlets_[0].centre[d]) < 1e-9)
       fold_ *= 2.0;

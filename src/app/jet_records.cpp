@@ -163,10 +163,13 @@ nlohmann::ordered_json MomentumRecord::summary() const {
 JetProfile::Moment profile_moment(const JetModel& jet, double height, const std::vector<double>& radii) {
   JetProfile::Moment m{.time = jet.time(), .axial = {}, .radial = {}, .k = {}, .epsilon = {}};
   const Vec3 lower = jet.grid().lower();
+  const Case& c = jet.scenario();
+  const double still = c.environment.pressure / (c.fluid.gas_constant * c.environment.temperature);
   for (const double r : radii) {
     const JetSample s = jet.sample({lower.x() + r, lower.y(), lower.z() + height});
-    m.axial.push_back(s.velocity.z());
-    m.radial.push_back(s.velocity.x());
+    const double same_momentum = std::sqrt(s.density / still);
+    m.axial.push_back(same_momentum * s.velocity.z());
+    m.radial.push_back(same_momentum * s.velocity.x());
     m.k.push_back(s.k);
     m.epsilon.push_back(s.epsilon);
   }

@@ -57,7 +57,8 @@ class MomentumRecord {
   double time_ = 0.0;
 };
 
-/// Profile of the jet across the plane at which an ejection box begins.
+/// Profile of the jet across the plane at which an ejection box begins. Its velocities are those of air of
+/// ambient density with the momentum of the jet: w sqrt(rho/rho_a).
 JetProfile::Moment profile_moment(const JetModel& jet, double height, const std::vector<double>& radii);
 
 }  // namespace ejecta

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "base/error.hpp"
+#include "app/computed_jet.hpp"
 #include "flow/gas.hpp"
 #include "sorter/nozzle.hpp"
 
@@ -80,8 +80,7 @@ bool has_jet(const Case& c) {
 
 std::unique_ptr<JetSource> make_jet_source(const Case& c) {
   if (!has_jet(c)) return nullptr;
-  if (c.jet.kind == JetKind::computed)
-    throw InputError("jet.kind = \"computed\" needs a stored jet: run `ejecta jet` on jet.source_case first");
+  if (c.jet.kind == JetKind::computed) return make_computed_jet(c);
   return std::make_unique<ValveJet>(c);
 }
 

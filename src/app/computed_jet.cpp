@@ -1,0 +1,84 @@
+#include "app/computed_jet.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <iostream>
+
+#include "app/jet_store.hpp"
+#include "base/error.hpp"
+#include "case/load.hpp"
+#include "flow/gas.hpp"
+#include "sorter/nozzle.hpp"
+#include "sorter/valve.hpp"
+
+namespace ejecta {
+namespace {
+
+/// How long the air of a shut valve is followed, s: it crosses 40 mm in well under one.
+constexpr double kAfterClosing = 2e-3;
+
+std::string folder(const Case& c) { return std::filesystem::path(c.path).parent_path().string(); }
+
+/// The valve's pulse as the jet's case computes it: commanded at time zero.
+ValveSpec from_zero(ValveSpec v) {
+  for (double& t : v.more_pulses) t -= v.opens_at;
+  v.opens_at = 0.0;
+  return v;
+}
+
+/// The case of the jet with the valve of the box.
+Case source_of(const Case& box) {
+  Case c = load_case((std::filesystem::path(folder(box)) / box.jet.source_case).string());
+  if (!box.valve.trace.empty())
+    throw InputError("jet.kind = \"computed\": give a valve.trace in the jet's case, not in the box");
+  c.valve = from_zero(box.valve);
+  c.run.end_time = Valve(c.valve).closed_from() + kAfterClosing;
+  return c;
+}
+
+class ComputedJet : public JetSource {
+ public:
+  ComputedJet(const Case& box, Case source)
+      : nozzle_(box.jet.nozzle),
+        starts_(box.valve.opens_at),
+        source_(std::move(source)),
+        valve_(source_.valve),
+        profile_(stored_or_computed_jet(source_, box.grid.axis[2].points.front() - box.jet.nozzle.z(),
+                                        [](const std::string& line) { std::cerr << line << '\n'; })) {}
+
+  JetState at(const Vec3& x, double, double, double time) const override {
+    return profile_.at(x - nozzle_, time - starts_);
+  }
+  double fastest(double time, double) const override { return profile_.fastest(time - starts_); }
+  std::vector<double> events() const override {
+    std::vector<double> list = valve_.events();
+    for (double& t : list) t += starts_;
+    return list;
+  }
+  double dead_from() const override { return starts_ + profile_.end_time(); }
+  double thrust(double time) const override {
+    const double ambient = source_.environment.pressure;
+    const double t0 = source_.valve.supply_temperature > 0.0 ? source_.valve.supply_temperature
+                                                             : source_.environment.temperature;
+    const NozzleExit exit = nozzle_exit({source_.fluid.gamma, source_.fluid.gas_constant},
+                                        valve_.total_pressure(time - starts_, ambient), t0, ambient);
+    return nozzle_thrust(exit, source_.valve.discharge_coefficient, source_.valve.orifice_diameter);
+  }
+
+ private:
+  Vec3 nozzle_;
+  double starts_;  ///< s, command of the box's valve
+  Case source_;
+  Valve valve_;
+  JetProfile profile_;
+};
+
+}  // namespace
+
+std::unique_ptr<JetSource> make_computed_jet(const Case& box) {
+  return std::make_unique<ComputedJet>(box, source_of(box));
+}
+
+}  // namespace ejecta
