@@ -18,7 +18,7 @@
 namespace ejecta {
 namespace {
 
-constexpr std::size_t max_file_size = 4u << 20;
+constexpr std::size_t max_file_size = 1u << 20;
 
 std::string read_file(const std::string& path) {
   std::error_code ignored;

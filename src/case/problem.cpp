@@ -52,10 +52,12 @@ std::string render(const Problem& p) {
 }
 
 std::string render(std::vector<Problem> problems) {
+  constexpr std::size_t shown = 50;
   std::stable_sort(problems.begin(), problems.end(),
                    [](const Problem& a, const Problem& b) { return a.place.offset < b.place.offset; });
   std::string text;
-  for (const Problem& p : problems) text += render(p) + "\n";
+  for (std::size_t n = 0; n < std::min(shown, problems.size()); ++n) text += render(problems[n]) + "\n";
+  if (problems.size() > shown) text += fmt::format("... and {} more\n\n", problems.size() - shown);
   const auto errors = std::count_if(problems.begin(), problems.end(),
                                     [](const Problem& p) { return p.severity == Severity::error; });
   return text + fmt::format("{} error{}", errors, errors == 1 ? "" : "s");

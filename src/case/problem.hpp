@@ -19,9 +19,12 @@ struct Problem {
   Place place{};  ///< without source: shown without line and caret
 };
 
+/// So many that nobody reads one more.
+inline bool enough(const std::vector<Problem>& problems) { return problems.size() >= 1000; }
+
 /// The problem as the user sees it: file, line, key, the line itself with a caret, and the help.
 std::string render(const Problem&);
-/// All problems in the order of the file, and how many there are.
+/// The first problems in the order of the file, and how many there are.
 std::string render(std::vector<Problem>);
 
 }  // namespace ejecta

@@ -58,6 +58,7 @@ class ValueReader {
 
  private:
   bool fail(const Node& node, const std::string& what, const std::string& closest = "") {
+    if (enough(problems_)) return false;
     problems_.push_back({.key = path_,
                          .what = what,
                          .expected = expectation(key_),

@@ -11,7 +11,7 @@ namespace ejecta {
 namespace {
 
 constexpr int max_syntax_errors = 20;
-constexpr int max_nesting = 32;  // toml11 recurses: deeper brackets would exhaust the stack
+constexpr int max_nesting = 32, max_dots = 200;  // toml11 recurses
 
 Place place_of(const toml::value& v, const std::shared_ptr<const Source>& source) {
   Place place{source, 0, 0};
@@ -59,16 +59,17 @@ Node convert(const toml::value& v, const std::shared_ptr<const Source>& source) 
   return node;
 }
 
-/// The deepest unclosed '[' or '{', strings not excepted.
+/// Nesting that would exhaust the stack: unclosed '[' or '{' (strings not excepted), or a key of very many
+/// dotted parts.
 bool nested_too_deeply(const std::string& text, std::size_t& where) {
-  int depth = 0;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    if (text[i] == '[' || text[i] == '{') ++depth;
-    else if ((text[i] == ']' || text[i] == '}') && depth > 0) --depth;
-    if (depth > max_nesting) {
-      where = i;
-      return true;
-    }
+  int brackets = 0, dots = 0;
+  for (where = 0; where < text.size(); ++where) {
+    const char c = text[where];
+    if (c == '[' || c == '{') ++brackets;
+    else if ((c == ']' || c == '}') && brackets > 0) --brackets;
+    if (c == '.') ++dots;
+    else if (c == ',' || c == '=' || c == '\n' || c == ']') dots = 0;
+    if (brackets > max_nesting || dots > max_dots) return true;
   }
   return false;
 }
@@ -144,7 +145,7 @@ Node parse_toml(std::shared_ptr<const Source> source, std::vector<Problem>& prob
   Node empty;
   empty.place = {source, 0, 0};
   if (std::size_t where = 0; nested_too_deeply(source->text, where)) {
-    problems.push_back({.what = "brackets nested too deeply", .place = {source, where, 1}});
+    problems.push_back({.what = "nested too deeply", .place = {source, where, 1}});
     return empty;
   }
   std::string text = source->text;

@@ -65,6 +65,7 @@ void refuse_in(const Node& table, const std::string& section, const std::string&
                std::vector<Problem>& problems) {
   const std::vector<std::string>& names = known_names().at(section);
   for (const Node& child : table.children) {
+    if (enough(problems)) return;
     const std::string child_section = section.empty() ? child.key : section + "." + child.key;
     const std::string child_path = path.empty() ? child.key : path + "." + child.key;
     if (std::find(names.begin(), names.end(), child.key) == names.end()) {

@@ -56,11 +56,11 @@ TEST_F(OddFile, Truncated) {
 }
 
 TEST_F(OddFile, Huge) {
-  EXPECT_THAT(refusal(file(std::string(5 << 20, '#'))), HasSubstr("larger than 4 MiB"));
+  EXPECT_THAT(refusal(file(std::string(5 << 20, '#'))), HasSubstr("larger than 1 MiB"));
 }
 
 TEST_F(OddFile, HugeSpecialFileIsNotReadToItsEnd) {
-  EXPECT_THAT(refusal("/dev/zero"), HasSubstr("larger than 4 MiB"));
+  EXPECT_THAT(refusal("/dev/zero"), HasSubstr("larger than 1 MiB"));
 }
 
 TEST_F(OddFile, Unreadable) {
@@ -88,6 +88,27 @@ TEST_F(OddFile, ManyElementsAreReadInReasonableTime) {
   for (int n = 0; n < 20000; ++n)
     text.append("[\"").append(std::to_string(n)).append(" mm\", \"0 mm\", \"0 mm\", \"5 mm\"],\n");
   EXPECT_EQ(load_case(file(text + "]\n").string()).bodies.at(0).spheres.size(), 20000u);
+}
+
+TEST_F(OddFile, AFileFullOfErrorsIsRefusedQuicklyAndBriefly) {
+  std::string keys = "[run]\n", list = "[run]\nend_time = \"1 s\"\n[valve]\nmore_pulses = [", lines;
+  for (int n = 0; n < 20000; ++n) {
+    keys.append("k").append(std::to_string(n)).append(" = 1\n");
+    list += "1,";
+    lines += "what is this\n";
+  }
+  for (const std::string& text : {keys, list + "]\n", lines}) {
+    const std::string message = refusal(file(text));
+    EXPECT_THAT(message, HasSubstr("error: "));
+    EXPECT_LT(message.size(), 100000u);
+  }
+}
+
+TEST_F(OddFile, EndlessDottedKeysAreRefusedBeforeTheyAreParsed) {
+  std::string key = "a";
+  for (int n = 0; n < 400000; ++n) key += ".a";
+  EXPECT_THAT(refusal(file(key + " = 1\n")), HasSubstr("nested too deeply"));
+  EXPECT_THAT(refusal(file("[" + key + "]\n")), HasSubstr("nested too deeply"));
 }
 
 TEST_F(OddFile, ControlCharactersDoNotReachTheTerminal) {
