@@ -1,5 +1,6 @@
 #include "app/flow_model.hpp"
 
+#include "app/compressible_model.hpp"
 #include "app/incompressible_model.hpp"
 #include "base/error.hpp"
 
@@ -20,6 +21,8 @@ std::unique_ptr<FlowModel> make_flow_model(const Case& c, const Grid& grid) {
       return nullptr;
     case FlowSolver::incompressible:
       return make_incompressible_model(c, grid);
+    case FlowSolver::compressible:
+      return make_compressible_model(c, grid);
     default:
       throw InputError("this flow.solver cannot run in a box yet: use \"incompressible\" or `ejecta jet`");
   }

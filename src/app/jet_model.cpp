@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <filesystem>
 #include <limits>
 #include <numbers>
 
@@ -16,26 +15,12 @@ namespace {
 
 constexpr double kFewestAcross = 8.0;  ///< cells across the orifice below which its jet means nothing
 
-/// Dissipation of the turbulence that enters: mixing length 0.07 d of a pipe (Versteeg & Malalasekera,
-/// section 3.7.2), epsilon = C_mu^(3/4) k^(3/2) / l
-double inlet_epsilon(double k, double diameter) {
-  return std::pow(0.09, 0.75) * std::pow(k, 1.5) / (0.07 * diameter);
-}
-
-double temperature_or(double temperature, const Case& c) {
-  return temperature > 0.0 ? temperature : c.environment.temperature;
-}
-
 }  // namespace
 
 JetModel::JetModel(const Case& c)
-    : case_(c),
-      grid_(make_grid(c)),
-      valve_(c.valve, std::filesystem::path(c.path).parent_path().string()),
-      gas_{c.fluid.gamma, c.fluid.gas_constant} {
+    : case_(c), grid_(make_grid(c)), drive_(c), gas_{c.fluid.gamma, c.fluid.gas_constant} {
   if (c.flow.solver != FlowSolver::compressible)
     throw InputError("a jet is computed from its nozzle with flow.solver = \"compressible\"");
-  valve_.require_jet(c.environment.pressure);
   solver_ = godunov::solver_from_case(c, grid_, inlets_);
   if (inlets_.empty())
     throw InputError(
@@ -46,7 +31,7 @@ JetModel::JetModel(const Case& c)
                     "{:.0f} are needed; "
                     "refine grid.x near the axis",
                     cells_across_orifice(), 1e3 * orifice_diameter(), kFewestAcross));
-  if (valve_.closed_from() > c.run.end_time && valve_.events().front() < c.run.end_time &&
+  if (valve().closed_from() > c.run.end_time && valve().events().front() < c.run.end_time &&
       c.valve.opens_at + c.valve.delay + c.valve.duration > c.run.end_time && c.run.end_time > 0.0)
     throw InputError(
         fmt::format("the pulse ends at {:.4g} ms, after the simulated time run.end_time of {:.4g} ms",
@@ -61,7 +46,7 @@ JetModel::JetModel(const Case& c)
   for (int d = 0; d < 2; ++d)
     if (!grid_.axisymmetric() && grid_.active(d) && std::abs(grid_.lower()[d] - inlets_[0].centre[d]) < 1e-9)
       fold_ *= 2.0;
-  for (const double t : valve_.events()) clock_.add_event(t);
+  for (const double t : valve().events()) clock_.add_event(t);
   clock_.add_event(c.run.end_time);
 }
 
@@ -71,33 +56,11 @@ double JetModel::cells_across_orifice() const {
   return 2.0 * inlets_[0].radius / width;
 }
 
-NozzleExit JetModel::ideal_exit() const {
-  return nozzle_exit(gas_, valve_.total_pressure(time(), ambient_pressure()),
-                     temperature_or(case_.valve.supply_temperature, case_), ambient_pressure());
-}
-
-void JetModel::drive(double time) {
-  const double p0 = valve_.total_pressure(time, ambient_pressure());
-  const double t0 = temperature_or(case_.valve.supply_temperature, case_);
-  const NozzleExit exit = nozzle_exit(gas_, p0, t0, ambient_pressure());
-  const double fluctuation = case_.jet.turbulence_intensity * exit.velocity;
-  for (const godunov::DrivenInlet& inlet : inlets_) {
-    godunov::Condition& condition = solver_->boundaries().condition(inlet.handle);
-    condition.total_pressure = p0;
-    condition.total_temperature = t0;
-    if (exit.velocity <= 0.0) continue;
-    condition.state.k = 1.5 * fluctuation * fluctuation;
-    condition.state.e = inlet_epsilon(condition.state.k, 2.0 * inlet.radius);
-    if (case_.flow.turbulence == TurbulenceModel::k_omega_sst)
-      condition.state.e = godunov::omega_of(condition.state.k, condition.state.e);
-  }
-}
-
 double JetModel::step() {
   double dt = std::min(solver_->stable_dt(case_.run.courant), case_.run.time_step_max);
   if (case_.run.time_step) dt = *case_.run.time_step;
   dt = clock_.land_on_events(dt);
-  drive(time() + 0.5 * dt);
+  drive_.apply(time() + 0.5 * dt, *solver_, inlets_);
   solver_->advance(dt);
   clock_.tick(dt);
   return dt;

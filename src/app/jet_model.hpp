@@ -2,12 +2,11 @@
 #include <memory>
 #include <vector>
 
+#include "app/jet_drive.hpp"
 #include "base/clock.hpp"
 #include "case/case.hpp"
 #include "flow/godunov/from_case.hpp"
 #include "grid/grid.hpp"
-#include "sorter/nozzle.hpp"
-#include "sorter/valve.hpp"
 
 namespace ejecta {
 
@@ -49,11 +48,11 @@ class JetModel {
   /// Through the cells of the orifice alone.
   JetFlow orifice_flow() const;
   /// Exact one-dimensional state the orifice should have now.
-  NozzleExit ideal_exit() const;
+  NozzleExit ideal_exit() const { return drive_.exit(time()); }
 
   const Grid& grid() const { return grid_; }
   const Case& scenario() const { return case_; }
-  const Valve& valve() const { return valve_; }
+  const Valve& valve() const { return drive_.valve(); }
   const godunov::Solver& solver() const { return *solver_; }
   double ambient_pressure() const { return case_.environment.pressure; }
   double orifice_diameter() const { return case_.valve.orifice_diameter; }
@@ -62,11 +61,10 @@ class JetModel {
   double fold() const { return fold_; }
 
  private:
-  void drive(double time);
   JetFlow sum_flow(int k, double within) const;
   Case case_;
   Grid grid_;
-  Valve valve_;
+  JetDrive drive_;
   Gas gas_;
   std::vector<godunov::DrivenInlet> inlets_;
   std::unique_ptr<godunov::Solver> solver_;

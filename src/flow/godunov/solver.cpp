@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <span>
 
 #include "base/error.hpp"
 #include "base/parallel.hpp"
@@ -12,9 +13,12 @@
 namespace ejecta::godunov {
 namespace {
 
-/// Weights of the step's start in the stages after the first
-constexpr std::array<double, 1> kHeun{0.5};
-constexpr std::array<double, 2> kThirdOrder{0.75, 1.0 / 3.0};
+/// A stage of Runge-Kutta: weight of the step's start in it, and of its fluxes in the whole step.
+struct Stage {
+  double keep, share;
+};
+constexpr std::array<Stage, 2> kHeun{{{0.0, 0.5}, {0.5, 0.5}}};
+constexpr std::array<Stage, 3> kThirdOrder{{{0.0, 1.0 / 6.0}, {0.75, 1.0 / 6.0}, {1.0 / 3.0, 2.0 / 3.0}}};
 
 Block make_block(const Grid& grid) {
   Block b;
@@ -125,9 +129,10 @@ void Solver::fluxes() {
 template <class P>
 void Solver::run_stages(double dt) {
   std::swap(u_, start_);
-  const auto stage = [&](double keep, const Block& previous) {
+  const auto run = [&](const Stage& stage, const Block& previous) {
     boundaries_.fill(w_);
     fluxes<P>();
+    if (options_.keep_ledger) add_to_ledger(stage.share * dt);
     for_each_cell(grid_.range(), UpdateKernel<P>{view_block<Real>(u_),
                                                  view_block<Real>(next_),
                                                  view_block<const Real>(w_),
@@ -141,15 +146,12 @@ void Solver::run_stages(double dt) {
                                                  diffusion_,
                                                  {geometry_.axis(0), geometry_.axis(1), geometry_.axis(2)},
                                                  Real(dt),
-                                                 Real(keep)});
+                                                 Real(stage.keep)});
     std::swap(w_, next_);
   };
-  stage(0.0, start_);
-  if (options_.stages == 2) {
-    for (const double keep : kHeun) stage(keep, u_);
-  } else {
-    for (const double keep : kThirdOrder) stage(keep, u_);
-  }
+  const std::span<const Stage> stages =
+      options_.stages == 2 ? std::span<const Stage>(kHeun) : std::span<const Stage>(kThirdOrder);
+  for (const Stage& stage : stages) run(stage, &stage == stages.data() ? start_ : u_);
 }
 
 void Solver::advance(double dt) {

@@ -15,7 +15,17 @@ struct Options {
   double prandtl = 0.71, prandtl_turbulent = 0.9;
   TurbulenceModel turbulence = TurbulenceModel::laminar;
   bool round_jet_correction = true, compressibility_correction = true;
-  int stages = 2;  ///< 2: Heun's method, 3: third order (both strong-stability preserving)
+  bool keep_ledger = false;  ///< sum up what crosses the boundaries
+  int stages = 2;            ///< 2: Heun's method, 3: third order (both strong-stability preserving)
+};
+
+/// What has entered through the boundaries since the start (axisymmetric: the full circle). Momentum counts
+/// the pressure from the reference.
+struct BoundaryLedger {
+  double mass = 0.0;         ///< kg
+  double mass_inward = 0.0;  ///< kg, inflow alone
+  double energy = 0.0;       ///< J
+  Vec3 momentum{0, 0, 0};    ///< N s
 };
 
 /// Compressible flow of an ideal gas, explicit in time: finite volumes, MUSCL, HLLC with a cure for the
@@ -46,13 +56,18 @@ class Solver {
   /// the reference.
   const Block& flux(int axis) const { return axis == 0 ? fx_ : axis == 1 ? fy_ : fz_; }
   const Field& eddy_viscosity() const { return eddy_viscosity_; }  ///< Pa s
-  Block& conserved() { return u_; }
+  void keep_ledger() { options_.keep_ledger = true; }
+  const BoundaryLedger& ledger() const { return ledger_; }
+  BoundaryLedger& ledger() { return ledger_; }
+  /// Everything a resume needs besides the ledger.
+  std::vector<Field*> state();
 
  private:
   template <class P>
   void run_stages(double dt);
   template <class P>
   void fluxes();
+  void add_to_ledger(double seconds);
   template <bool Sst, bool RoundJet>
   void turbulence(double dt);
   void set_turbulence_constants();
@@ -67,6 +82,7 @@ class Solver {
   Field eddy_viscosity_, f1_;
   std::array<std::vector<Real>, 3> wall_distance_;
   bool started_ = false;
+  BoundaryLedger ledger_;
 };
 
 }  // namespace ejecta::godunov

@@ -1,0 +1,161 @@
+#include "app/compressible_model.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "app/grid_sampler.hpp"
+#include "app/jet_drive.hpp"
+#include "base/error.hpp"
+#include "base/stopwatch.hpp"
+#include "flow/godunov/from_case.hpp"
+
+namespace ejecta {
+namespace {
+
+using namespace godunov;
+
+class CompressibleModel : public FlowModel {
+ public:
+  CompressibleModel(const Case& c, const Grid& grid) : case_(c), grid_(grid) {
+    if (!c.bodies.empty())
+      throw InputError(
+          "bodies move in flow.solver = \"incompressible\"; \"compressible\" computes the air alone");
+    solver_ = solver_from_case(c, grid, inlets_);
+    solver_->keep_ledger();
+    if (!inlets_.empty()) drive_ = std::make_unique<JetDrive>(c);
+    momentum_at_start_ = momentum();
+    mass_at_start_ = solver_->total(kRho);
+    energy_at_start_ = solver_->total(kP);
+  }
+
+  double stable_dt(double) override {
+    return std::min(solver_->stable_dt(case_.run.courant), case_.run.time_step_max);
+  }
+  double courant(double dt) const override { return dt / solver_->stable_dt(1.0); }
+  void advance(double time, double dt, SolidMask&) override {
+    const ScopedTimer timer(seconds_);
+    if (drive_) drive_->apply(time + 0.5 * dt, *solver_, inlets_);
+    solver_->advance(dt);
+    ++calls_;
+  }
+
+  double density() const override { return case_.fluid.density; }
+  std::array<ConstFieldView, 3> velocity() const override { return {view(kU), view(kV), view(kW)}; }
+  std::vector<output::CellField> fields() override {
+    std::vector<output::CellField> all{output::vector_field("velocity", view(kU), view(kV), view(kW)),
+                                       output::scalar_field("density", view(kRho)),
+                                       output::scalar_field("pressure_above_reference", view(kP))};
+    if (turbulent()) {
+      all.push_back(output::scalar_field("k", view(kK)));
+      all.push_back(output::scalar_field(
+          case_.flow.turbulence == TurbulenceModel::k_omega_sst ? "omega" : "epsilon", view(kE)));
+      all.push_back(output::scalar_field("eddy_viscosity", solver_->eddy_viscosity().view()));
+    }
+    return all;
+  }
+  std::vector<std::pair<std::string, std::string>> quantities() const override {
+    return {{"velocity_x", "m/s"}, {"velocity_y", "m/s"}, {"velocity_z", "m/s"}, {"pressure", "Pa"},
+            {"density", "kg/m3"},  {"temperature", "K"},  {"mach", "1"},         {"total_pressure", "Pa"}};
+  }
+  void sample(const Vec3& x, std::span<double> values) const override {
+    const GridSampler at(grid_, x);
+    const Gas& gas = solver_->options().gas;
+    const Vec3 u(at(view(kU)), at(view(kV)), at(view(kW)));
+    const double p = at(view(kP)) + solver_->options().reference_pressure, rho = at(view(kRho));
+    const double temperature = p / (rho * gas.gas_constant),
+                 mach = u.norm() / gas_sound_speed(gas, temperature);
+    const std::array<double, 8> all{u.x(), u.y(),       u.z(), p,
+                                    rho,   temperature, mach,  p * gas_total_pressure_ratio(gas, mach)};
+    std::copy(all.begin(), all.end(), values.begin());
+  }
+
+  Vec3 momentum() const override {
+    return {solver_->total(kU), grid_.active(1) ? solver_->total(kV) : 0.0, solver_->total(kW)};
+  }
+  double kinetic_energy() const override {
+    const auto rho = view(kRho), u = view(kU), v = view(kV), w = view(kW);
+    const Metrics x = grid_.metrics(0), y = grid_.metrics(1), z = grid_.metrics(2);
+    return 0.5 * reduce_sum(grid_.range(), [=](int i, int j, int k) {
+             const double square = double(u(i, j, k)) * u(i, j, k) + double(v(i, j, k)) * v(i, j, k) +
+                                   double(w(i, j, k)) * w(i, j, k);
+             return double(rho(i, j, k)) * square * double(x.volume[i]) * double(y.volume[j]) *
+                    double(z.volume[k]);
+           });
+  }
+  bool finite(Vec3* where) const override {
+    for (int k = 0; k < grid_.nz(); ++k)
+      for (int j = 0; j < grid_.ny(); ++j)
+        for (int i = 0; i < grid_.nx(); ++i) {
+          const GasState s = solver_->at(i, j, k);
+          if (s.density > 0.0 && s.pressure > 0.0 && std::isfinite(s.velocity.sum() + s.density + s.pressure))
+            continue;
+          if (where) *where = grid_.centre(i, j, k);
+          return false;
+        }
+    return true;
+  }
+
+  void report(nlohmann::ordered_json& result) const override {
+    const BoundaryLedger& l = solver_->ledger();
+    const double mass = solver_->total(kRho), energy = solver_->total(kP);
+    Vec3 lost = momentum() - momentum_at_start_ - l.momentum;
+    if (grid_.axisymmetric()) lost.x() = 0.0;  // radial momentum is not conserved
+    const double scale = std::max({l.momentum.norm(), (momentum() - momentum_at_start_).norm(), 1e-30});
+    auto& ledger = result["ledger"];
+    ledger["mass_relative_residual"] = std::abs(mass - mass_at_start_ - l.mass) / mass_at_start_;
+    ledger["momentum_relative_residual"] = lost.norm() / scale;
+    ledger["energy_relative_residual"] = std::abs(energy - energy_at_start_ - l.energy) /
+                                         std::max(std::abs(energy_at_start_), std::abs(l.energy));
+    ledger["mass_kg"] = mass;
+  }
+  std::vector<output::OperatorTime> operators() const override {
+    return {{"flow.godunov", "U = U - dt div F(U), HLLC on MUSCL states, two stages (Eqs 1-3 with energy)",
+             seconds_, calls_}};
+  }
+  std::vector<double> events() const override {
+    return drive_ ? drive_->valve().events() : std::vector<double>{};
+  }
+  std::vector<Field*> state_fields() override { return solver_->state(); }
+  std::vector<double> state_numbers() const override {
+    const BoundaryLedger& l = solver_->ledger();
+    return {l.mass,
+            l.mass_inward,
+            l.energy,
+            l.momentum.x(),
+            l.momentum.y(),
+            l.momentum.z(),
+            momentum_at_start_.x(),
+            momentum_at_start_.y(),
+            momentum_at_start_.z(),
+            mass_at_start_,
+            energy_at_start_};
+  }
+  void restore_numbers(std::span<const double> n, double) override {
+    BoundaryLedger& l = solver_->ledger();
+    l = {n[0], n[1], n[2], Vec3(n[3], n[4], n[5])};
+    momentum_at_start_ = {n[6], n[7], n[8]};
+    mass_at_start_ = n[9];
+    energy_at_start_ = n[10];
+  }
+
+ private:
+  ConstFieldView view(Component c) const { return solver_->primitive()[static_cast<std::size_t>(c)].view(); }
+  bool turbulent() const { return case_.flow.turbulence != TurbulenceModel::laminar; }
+
+  const Case& case_;
+  const Grid& grid_;
+  std::vector<DrivenInlet> inlets_;
+  std::unique_ptr<Solver> solver_;
+  std::unique_ptr<JetDrive> drive_;
+  Vec3 momentum_at_start_{0, 0, 0};
+  double mass_at_start_ = 0.0, energy_at_start_ = 0.0, seconds_ = 0.0;
+  std::int64_t calls_ = 0;
+};
+
+}  // namespace
+
+std::unique_ptr<FlowModel> make_compressible_model(const Case& c, const Grid& grid) {
+  return std::make_unique<CompressibleModel>(c, grid);
+}
+
+}  // namespace ejecta

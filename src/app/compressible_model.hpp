@@ -1,0 +1,9 @@
+#pragma once
+#include "app/flow_model.hpp"
+
+namespace ejecta {
+
+/// Compressible flow of a case without bodies: shock tubes, waves, jets from their orifice.
+std::unique_ptr<FlowModel> make_compressible_model(const Case& c, const Grid& grid);
+
+}  // namespace ejecta
