@@ -29,9 +29,9 @@ Shape make_shape(const BodySpec& spec, const std::string& directory) {
       return make_mesh(read_stl(path, spec.scale), path);
     }
     case ShapeKind::superquadric:
-      break;
+      return make_superquadric(spec.size, spec.exponents[0], spec.exponents[1]);
   }
-  throw InputError("this shape is not available");
+  throw InputError("unknown shape");
 }
 
 Body make_body(const BodySpec& spec, const Materials& materials, const std::string& directory) {

@@ -12,7 +12,12 @@
 namespace ejecta {
 namespace {
 
-using Triangle = std::array<int, 3>;
+constexpr double kCoplanar = 1e-9;  // of the size: heights below it are none
+
+struct Triangle {
+  std::array<int, 3> corners;
+  Vec3 normal;  // unit, outward
+};
 
 struct Hull {
   const std::vector<Vec3>& points;
@@ -20,10 +25,10 @@ struct Hull {
   std::vector<Triangle> triangles;
 
   const Vec3& at(int n) const { return points[static_cast<std::size_t>(n)]; }
-  Vec3 normal(const Triangle& t) const {
-    return (at(t[1]) - at(t[0])).cross(at(t[2]) - at(t[0])).normalized();
+  void add(int a, int b, int c) {
+    triangles.push_back({{a, b, c}, (at(b) - at(a)).cross(at(c) - at(a)).normalized()});
   }
-  double height(const Triangle& t, int point) const { return normal(t).dot(at(point) - at(t[0])); }
+  double height(const Triangle& t, int point) const { return t.normal.dot(at(point) - at(t.corners[0])); }
 };
 
 template <class Measure>
@@ -46,9 +51,9 @@ void first_tetrahedron(Hull& hull) {
   if (!(std::abs(height) > hull.tolerance))
     throw InputError(
         fmt::format("the {} points lie in a plane: a solid needs at least four that do not", points.size()));
-  hull.triangles = {{a, b, c}, {a, c, d}, {a, d, b}, {b, d, c}};
-  if (height > 0)
-    for (Triangle& t : hull.triangles) std::swap(t[1], t[2]);
+  const bool above = height > 0;
+  for (const auto& [p, q, r] : {std::array{a, b, c}, {a, c, d}, {a, d, b}, {b, d, c}})
+    above ? hull.add(p, r, q) : hull.add(p, q, r);
 }
 
 /// Replaces the triangles that `point` sees by a fan from it to their rim.
@@ -61,45 +66,66 @@ void add_point(Hull& hull, int point) {
       continue;
     }
     for (std::size_t c = 0; c < 3; ++c) {
-      const int from = t[c], to = t[(c + 1) % 3];
+      const int from = t.corners[c], to = t.corners[(c + 1) % 3];
       if (!rim.erase({to, from})) rim.insert({from, to});
     }
   }
-  for (const auto& [from, to] : rim) kept.push_back({from, to, point});
   hull.triangles = std::move(kept);
+  for (const auto& [from, to] : rim) hull.add(from, to, point);
 }
 
-/// Triangles of one plane joined: the rim of each group, walked around.
+using Rim = std::set<std::pair<int, int>>;
+
+/// Corners of a rim that is one simple loop; nothing if it is not.
+std::vector<int> walk(const Rim& rim) {
+  const std::map<int, int> next(rim.begin(), rim.end());
+  std::vector<int> corners;
+  if (next.size() != rim.size()) return corners;
+  int at = next.begin()->first;
+  do {
+    corners.push_back(at);
+    const auto to = next.find(at);
+    if (to == next.end()) return {};
+    at = to->second;
+  } while (at != corners.front() && corners.size() < next.size());
+  return at == corners.front() && corners.size() == next.size() ? corners : std::vector<int>();
+}
+
+/// Triangles of one plane joined to a face, where they have one rim.
 Polytope merge_faces(const Hull& hull) {
   Polytope result;
   std::map<int, int> renamed;
   std::vector<bool> used(hull.triangles.size(), false);
   for (std::size_t n = 0; n < hull.triangles.size(); ++n) {
     if (used[n]) continue;
-    const Vec3 normal = hull.normal(hull.triangles[n]);
-    const double offset = normal.dot(hull.at(hull.triangles[n][0]));
-    std::set<std::pair<int, int>> rim;
+    const Triangle& own = hull.triangles[n];
+    const Vec3 normal = own.normal;
+    const double offset = normal.dot(hull.at(own.corners[0]));
+    std::vector<std::size_t> group;
+    Rim rim;
     for (std::size_t m = n; m < hull.triangles.size(); ++m) {
-      const Triangle& t = hull.triangles[m];
+      const auto& t = hull.triangles[m].corners;
       const bool same = std::all_of(t.begin(), t.end(), [&](int p) {
         return std::abs(normal.dot(hull.at(p)) - offset) <= 2 * hull.tolerance;
       });
       if (used[m] || !same) continue;
-      used[m] = true;
+      group.push_back(m);
       for (std::size_t c = 0; c < 3; ++c)
         if (!rim.erase({t[(c + 1) % 3], t[c]})) rim.insert({t[c], t[(c + 1) % 3]});
     }
-    const std::map<int, int> next(rim.begin(), rim.end());
-    Polytope::Face face{normal, offset, static_cast<int>(result.corners.size()), 0};
-    int at = next.begin()->first;
-    do {
-      const auto [name, fresh] = renamed.emplace(at, static_cast<int>(result.vertices.size()));
-      if (fresh) result.vertices.push_back(hull.at(at));
+    std::vector<int> corners = walk(rim);
+    if (corners.empty()) {  // round-off has torn the plane: leave its triangles as they are
+      corners.assign(own.corners.begin(), own.corners.end());
+      group = {n};
+    }
+    for (const std::size_t m : group) used[m] = true;
+    result.faces.push_back(
+        {normal, offset, static_cast<int>(result.corners.size()), static_cast<int>(corners.size())});
+    for (const int corner : corners) {
+      const auto [name, fresh] = renamed.emplace(corner, static_cast<int>(result.vertices.size()));
+      if (fresh) result.vertices.push_back(hull.at(corner));
       result.corners.push_back(name->second);
-      ++face.count;
-      at = next.at(at);
-    } while (at != next.begin()->first);
-    result.faces.push_back(face);
+    }
   }
   return result;
 }
@@ -115,12 +141,15 @@ Polytope convex_hull(const std::vector<Vec3>& points) {
     low = low.cwiseMin(p);
     high = high.cwiseMax(p);
   }
-  Hull hull{points, 1e-9 * (high - low).norm(), {}};
+  Hull hull{points, kCoplanar * (high - low).norm(), {}};
   first_tetrahedron(hull);
   for (int n = 0; n < static_cast<int>(points.size()); ++n) add_point(hull, n);
   Polytope result = merge_faces(hull);
   result.centre = 0.5 * (low + high);
   for (const Vec3& v : result.vertices) result.radius = std::max(result.radius, (v - result.centre).norm());
+  for (const Polytope::Face& f : result.faces)
+    if (!f.normal.allFinite())
+      throw InputError("the points are too nearly in a plane or line to span a solid");
   return result;
 }
 

@@ -4,6 +4,7 @@
 #include <numeric>
 
 #include "base/error.hpp"
+#include "shape/polytope_shape.hpp"
 #include "shape/principal_axes.hpp"
 #include "shape/shape_data.hpp"
 
@@ -52,9 +53,11 @@ Polytope convex_piece(const TriangleMesh& mesh, const std::vector<int>& piece, c
   return hull;
 }
 
-Shape make_polytopes(std::vector<Polytope> parts, TriangleMesh surface) {
+}  // namespace
+
+Shape make_polytope_shape(std::vector<Polytope> parts, TriangleMesh surface, const MassProperties& mass) {
   auto data = std::make_shared<ShapeData>();
-  data->mass = mass_mesh(surface);
+  data->mass = mass;
   data->frame = to_principal_axes(data->mass);
   const Mat3 turn = data->frame.rotation.conjugate().toRotationMatrix();
   for (Polytope& p : parts) p = moved(p, turn, -(turn * data->frame.centre));
@@ -69,12 +72,11 @@ Shape make_polytopes(std::vector<Polytope> parts, TriangleMesh surface) {
   return Shape(data);
 }
 
-}  // namespace
-
 Shape make_polyhedron(const std::vector<Vec3>& points) {
   Polytope hull = convex_hull(points);
   TriangleMesh surface = triangles_of(hull);
-  return make_polytopes({std::move(hull)}, std::move(surface));
+  const MassProperties mass = mass_mesh(surface);
+  return make_polytope_shape({std::move(hull)}, std::move(surface), mass);
 }
 
 Shape make_mesh(const TriangleMesh& mesh, const std::string& name) {
@@ -85,13 +87,14 @@ Shape make_mesh(const TriangleMesh& mesh, const std::string& name) {
     parts.push_back(convex_piece(mesh, piece, name));
     hulls += mass_mesh(triangles_of(parts.back())).volume;
   }
-  const double volume = mass_mesh(mesh).volume;
+  const MassProperties mass = mass_mesh(mesh);
+  const double volume = mass.volume;
   if (std::abs(hulls - volume) > 1e-4 * volume)
     throw InputError(fmt::format(
         "{}: the solid is not convex: its volume is {:.6g} m3, that of the hulls of its {} pieces "
         "{:.6g} m3; divide it into closed convex pieces that do not overlap",
         name, volume, parts.size(), hulls));
-  return make_polytopes(std::move(parts), mesh);
+  return make_polytope_shape(std::move(parts), mesh, mass);
 }
 
 }  // namespace ejecta

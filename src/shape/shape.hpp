@@ -71,4 +71,8 @@ Shape make_polyhedron(const std::vector<Vec3>& points);
 /// name the open edge, the inverted or degenerate triangle, or the vertex that makes a piece concave.
 Shape make_mesh(const TriangleMesh& mesh, const std::string& name);
 
+/// ((|x|/a)^across + (|y|/b)^across)^(along/across) + (|z|/c)^along <= 1, `size` = (2a, 2b, 2c); 2, 2 is an
+/// ellipsoid. Mass properties are exact; its surface, and so contacts, are those of an inscribed polyhedron.
+Shape make_superquadric(const Vec3& size, double across, double along);
+
 }  // namespace ejecta

@@ -47,6 +47,22 @@ TEST(MassBalls, ClustersOfThePaper) {
   EXPECT_NEAR(flat.inertia(2, 2) / flat.volume / (200.0 / 12), 0.7941, 2e-4);
 }
 
+TEST(Superquadric, EllipsoidAndNearlyABox) {
+  const Shape ellipsoid = make_superquadric(Vec3(2, 4, 6), 2, 2);
+  const MassProperties& m = ellipsoid.mass_properties();
+  EXPECT_NEAR(m.volume, 4.0 / 3.0 * kPi * 6, 1e-12);
+  EXPECT_NEAR(m.inertia(2, 2), m.volume * (1 + 4) / 5, 1e-12);
+  EXPECT_NEAR(m.inertia(0, 0), m.volume * (4 + 9) / 5, 1e-12);
+  EXPECT_NEAR(mass_mesh(ellipsoid.surface()).volume / m.volume, 1.0, 0.01);
+  const MassProperties box = make_superquadric(Vec3(2, 4, 6), 20, 20).mass_properties();
+  EXPECT_NEAR(box.volume, 48, 0.02 * 48);
+  EXPECT_NEAR(box.inertia(0, 0), 208, 0.03 * 208);
+  const Shape rounded = make_superquadric(Vec3(1, 1, 2), 4, 3);
+  EXPECT_NEAR(mass_mesh(rounded.surface()).volume / rounded.mass_properties().volume, 1.0, 0.02);
+  EXPECT_NEAR(mass_mesh(rounded.surface()).inertia(0, 0) / rounded.mass_properties().inertia(0, 0), 1.0,
+              0.03);
+}
+
 TEST(MassMesh, BoxFarFromTheOriginIsExact) {
   TriangleMesh mesh = make_box(Vec3(1, 2, 3)).surface();
   for (Vec3& v : mesh.vertices) v += Vec3(100, -50, 20);

@@ -17,6 +17,7 @@ std::vector<std::pair<const char*, Shape>> all_shapes() {
       {"two balls", make_multisphere({{Vec3(0, 0, 0), 1.0}, {Vec3(1, 0.5, 0), 0.7}})},
       {"cluster", make_cluster(Vec3(1, 1, 0.5), {3, 3, 1}, 0.5)},
       {"polyhedron", make_polyhedron({{0, 0, 0}, {2, 0, 0}, {0, 1.5, 0}, {0.3, 0.2, 1.8}, {1.5, 1.4, 1.1}})},
+      {"superquadric", make_superquadric(Vec3(1, 2, 1.5), 3, 4)},
       {"mesh", make_mesh(icosphere(1), "icosphere")}};
 }
 
@@ -73,6 +74,7 @@ TEST(Shape, RefusesLengthsThatAreNot) {
   EXPECT_THROW(make_sphere(std::nan("")), InputError);
   EXPECT_THROW(make_box(Vec3(1, -1, 1)), InputError);
   EXPECT_THROW(make_multisphere({}), InputError);
+  EXPECT_THROW(make_superquadric(Vec3(1, 1, 1), 0.5, 2), InputError);
   EXPECT_THROW(make_cluster(Vec3(1, 1, 1), {3, 3, 3}, 2.0), InputError);
 }
 
