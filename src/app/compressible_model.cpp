@@ -7,6 +7,7 @@
 #include "app/jet_drive.hpp"
 #include "base/error.hpp"
 #include "base/stopwatch.hpp"
+#include "case/expression.hpp"
 #include "flow/godunov/from_case.hpp"
 
 namespace ejecta {
@@ -36,6 +37,7 @@ class CompressibleModel : public FlowModel {
     const ScopedTimer timer(seconds_);
     if (drive_) drive_->apply(time + 0.5 * dt, *solver_, inlets_);
     solver_->advance(dt);
+    time_ = time + dt;
     ++calls_;
   }
 
@@ -107,6 +109,10 @@ class CompressibleModel : public FlowModel {
     ledger["energy_relative_residual"] = std::abs(energy - energy_at_start_ - l.energy) /
                                          std::max(std::abs(energy_at_start_), std::abs(l.energy));
     ledger["mass_kg"] = mass;
+    if (case_.exact.density)
+      add_errors(result, "density", *case_.exact.density, [](const GasState& s) { return s.density; });
+    if (case_.exact.pressure)
+      add_errors(result, "pressure", *case_.exact.pressure, [](const GasState& s) { return s.pressure; });
   }
   std::vector<output::OperatorTime> operators() const override {
     return {{"flow.godunov", "U = U - dt div F(U), HLLC on MUSCL states, two stages (Eqs 1-3 with energy)",
@@ -130,7 +136,8 @@ class CompressibleModel : public FlowModel {
             mass_at_start_,
             energy_at_start_};
   }
-  void restore_numbers(std::span<const double> n, double) override {
+  void restore_numbers(std::span<const double> n, double time) override {
+    time_ = time;
     BoundaryLedger& l = solver_->ledger();
     l = {n[0], n[1], n[2], Vec3(n[3], n[4], n[5])};
     momentum_at_start_ = {n[6], n[7], n[8]};
@@ -140,6 +147,27 @@ class CompressibleModel : public FlowModel {
 
  private:
   ConstFieldView view(Component c) const { return solver_->primitive()[static_cast<std::size_t>(c)].view(); }
+  /// Volume-weighted mean and largest error of a scalar against a formula.
+  template <class Value>
+  void add_errors(nlohmann::ordered_json& result, const std::string& name, const std::string& formula,
+                  const Value& value) const {
+    const Expression exact(formula);
+    double sum = 0.0, square = 0.0, volume = 0.0, largest = 0.0;
+    for (int k = 0; k < grid_.nz(); ++k)
+      for (int j = 0; j < grid_.ny(); ++j)
+        for (int i = 0; i < grid_.nx(); ++i) {
+          const Vec3 x = grid_.centre(i, j, k);
+          const double e = std::abs(value(solver_->at(i, j, k)) - exact(x.x(), x.y(), x.z(), time_));
+          const double v = grid_.volume(i, j, k);
+          sum += v * e;
+          square += v * e * e;
+          volume += v;
+          largest = std::max(largest, e);
+        }
+    result["errors"][name + "_l1"] = sum / volume;
+    result["errors"][name + "_l2"] = std::sqrt(square / volume);
+    result["errors"][name + "_max"] = largest;
+  }
   bool turbulent() const { return case_.flow.turbulence != TurbulenceModel::laminar; }
 
   const Case& case_;
@@ -148,7 +176,7 @@ class CompressibleModel : public FlowModel {
   std::unique_ptr<Solver> solver_;
   std::unique_ptr<JetDrive> drive_;
   Vec3 momentum_at_start_{0, 0, 0};
-  double mass_at_start_ = 0.0, energy_at_start_ = 0.0, seconds_ = 0.0;
+  double mass_at_start_ = 0.0, energy_at_start_ = 0.0, seconds_ = 0.0, time_ = 0.0;
   std::int64_t calls_ = 0;
 };
 
