@@ -37,6 +37,7 @@ CoupledModel::CoupledModel(const Case& c)
   force_sum_.assign(n, Vec3::Zero());
   torque_sum_.assign(n, Vec3::Zero());
   before_.resize(n);
+  peak_speed_.assign(n, 0.0);
   if (flow_ && n > 0) coupling_.emplace(grid_, flow_->density(), c.environment.gravity);
   if (const auto jet = flow_ ? make_jet_source(c) : nullptr) dead_from_ = jet->dead_from();
   check_bodies();
@@ -135,6 +136,8 @@ void CoupledModel::build_step() {
                        for (std::size_t b = 0; b < before_.size(); ++b)
                          before_[b] = particles_.bodies()[b].position;
                        particles_.advance(dt, loads_);
+                       for (std::size_t b = 0; b < peak_speed_.size(); ++b)
+                         peak_speed_[b] = std::max(peak_speed_[b], particles_.bodies()[b].velocity.norm());
                      }});
   if (splitter_)
     step_.push_back(
@@ -235,6 +238,7 @@ std::vector<std::vector<double>> CoupledModel::state_numbers() const {
   std::vector<double> own{averaged_, max_courant_, peak_energy_, double(flow_steps_), double(air_)};
   for (const auto* list : {&impulse_, &start_velocity_, &force_sum_, &torque_sum_})
     for (const Vec3& v : *list) own.insert(own.end(), {v.x(), v.y(), v.z()});
+  own.insert(own.end(), peak_speed_.begin(), peak_speed_.end());
   for (const Load& l : loads_)
     own.insert(own.end(), {l.force.x(), l.force.y(), l.force.z(), l.torque.x(), l.torque.y(), l.torque.z()});
   return {own, particles_.state(), flow_ ? flow_->state_numbers() : std::vector<double>{},
@@ -255,6 +259,7 @@ void CoupledModel::restore_numbers(const std::vector<std::vector<double>>& numbe
   };
   for (auto* list : {&impulse_, &start_velocity_, &force_sum_, &torque_sum_})
     for (Vec3& v : *list) v = next();
+  for (double& v : peak_speed_) v = own.at(at++);
   for (Load& l : loads_) l.force = next(), l.torque = next();
   particles_.restore(numbers.at(1));
   if (flow_) flow_->restore_numbers(numbers.at(2), time);

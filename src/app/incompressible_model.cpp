@@ -6,6 +6,7 @@
 
 #include "app/grid_sampler.hpp"
 #include "app/jet_source.hpp"
+#include "app/round_jet.hpp"
 #include "base/error.hpp"
 #include "case/expression.hpp"
 #include "flow/piso/incompressible.hpp"
@@ -81,7 +82,10 @@ class IncompressibleModel : public FlowModel {
     return dt;
   }
   double courant(double dt) const override { return flow_->courant(dt); }
-  void advance(double time, double dt, SolidMask& solids) override { flow_->advance(time, dt, solids); }
+  void advance(double time, double dt, SolidMask& solids) override {
+    flow_->advance(time, dt, solids);
+    last_time_ = time + dt;
+  }
   double density() const override { return density_; }
   std::array<ConstFieldView, 3> velocity() const override { return flow_->velocity(); }
 
@@ -141,6 +145,18 @@ class IncompressibleModel : public FlowModel {
                                        l.impulse_on_solids.z()};
     ledger["largest_divergence"] = flow_->largest_divergence();
     ledger["leak_m_s"] = flow_->leak();
+    if (jet_ && grid_.axisymmetric()) {
+      const double d = case_.valve.orifice_diameter, z0 = case_.jet.nozzle.z();
+      const double exit = jet_->fastest(last_time_, grid_.axis(2).face.front());
+      const TwoEquation* t = flow_->turbulence();
+      if (const auto jet = analyse_round_jet(grid_, flow_->velocity()[2], flow_->pressure_field().view(),
+                                             t ? t->eddy_viscosity() : ConstFieldView{}, nu_, d, exit,
+                                             z0 + 30.0 * d, z0 + 0.8 * (grid_.axis(2).face.back() - z0)))
+        result["round_jet"] = {{"decay", jet->decay},
+                               {"spreading", jet->spreading},
+                               {"decay_times_spreading", jet->decay * jet->spreading},
+                               {"momentum_variation", jet->momentum_variation}};
+    }
   }
 
   std::vector<output::OperatorTime> operators() const override {
@@ -313,6 +329,7 @@ class IncompressibleModel : public FlowModel {
   std::unique_ptr<JetSource> jet_;
   std::unique_ptr<Incompressible> flow_;
   Vec3 momentum_at_start_{0, 0, 0};
+  double last_time_ = 0;
 };
 
 }  // namespace
