@@ -1,6 +1,6 @@
-// Feeds arbitrary bytes to the checkpoint reader (libFuzzer). Whatever the bytes, the reader either reads them or
-// throws Error; everything else is a finding. Damaged content never reaches HDF5, whose own parser is not made
-// for hostile files: the seal is checked first.
+// Feeds arbitrary bytes to the checkpoint reader (libFuzzer). Whatever the bytes, the reader either reads
+// them or throws Error; everything else is a finding. Damaged content never reaches HDF5, whose own parser is
+// not made for hostile files: the seal is checked first.
 #include <fmt/format.h>
 #include <sys/mman.h>
 #include <unistd.h>

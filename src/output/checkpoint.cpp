@@ -1,10 +1,8 @@
 #include "output/checkpoint.hpp"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
 
 #include "base/error.hpp"
 #include "output/checkpoint_seal.hpp"
@@ -15,26 +13,21 @@ namespace fs = std::filesystem;
 
 namespace ejecta::output {
 
+// The file is made in memory and written by us: HDF5 1.10 cannot close a file on a full disk, and crashes
+// over it when the program ends.
 struct CheckpointWriter::Impl {
-  fs::path path, temporary;
+  OutputFile out;
+  fs::path path;
   CheckpointTime at;
   Hdf5Handle file;
 
-  ~Impl() {  // also when the constructor of the writer throws
-    const Hdf5Silence silence;
-    file.reset();
-    if (!temporary.empty()) ::unlink(temporary.c_str());
-  }
-
-  [[noreturn]] void fail(const std::string& what) const {
-    if (errno != 0) throw_system_error(what, temporary);
-    throw Error(fmt::format("{} {}", what, temporary.string()));
+  Error error(const std::string& what) const {
+    return Error(fmt::format("checkpoint {}: {}", path.string(), what));
   }
 
   template <class T>
   void put(const std::string& name, std::span<const T> values) {
     const Hdf5Silence silence;
-    errno = 0;
     const hsize_t length = values.size();
     const Hdf5Handle space(H5Screate_simple(1, &length, nullptr), H5Sclose);
     const Hdf5Handle links(H5Pcreate(H5P_LINK_CREATE), H5Pclose);
@@ -44,21 +37,28 @@ struct CheckpointWriter::Impl {
     const Hdf5Handle data(H5Dcreate2(file, name.c_str(), hdf5_type<T>(), space, links, creation, H5P_DEFAULT),
                           H5Dclose);
     if (!data || H5Dwrite(data, hdf5_type<T>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0)
-      fail(fmt::format("cannot write \"{}\" into", name));
+      throw error(fmt::format("HDF5 cannot take \"{}\" (the name twice, or no memory)", name));
+  }
+
+  /// The finished file after its first 512 bytes; lets go of HDF5's copy.
+  std::vector<std::uint8_t> take_image() {
+    const ssize_t size = H5Fflush(file, H5F_SCOPE_GLOBAL) < 0 ? -1 : H5Fget_file_image(file, nullptr, 0);
+    std::vector<std::uint8_t> image(static_cast<std::size_t>(std::max<ssize_t>(size, 0)));
+    if (size <= 0 || H5Fget_file_image(file, image.data(), image.size()) != size || !file.reset())
+      throw error("HDF5 cannot finish it");
+    return image;
   }
 };
 
-CheckpointWriter::CheckpointWriter(fs::path path, CheckpointTime at) : impl_(std::make_unique<Impl>()) {
+CheckpointWriter::CheckpointWriter(fs::path path, CheckpointTime at)
+    : impl_(new Impl{OutputFile(path), path, at, {}}) {
   const Hdf5Silence silence;
-  impl_->path = std::move(path);
-  impl_->temporary = impl_->path;
-  impl_->temporary += ".tmp";
-  impl_->at = at;
-  const Hdf5Handle layout(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
+  constexpr std::size_t kGrowth = std::size_t(1) << 22;
+  const Hdf5Handle layout(H5Pcreate(H5P_FILE_CREATE), H5Pclose), access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
   H5Pset_userblock(layout, kSealBytes);
-  errno = 0;
-  impl_->file = Hdf5Handle(H5Fcreate(impl_->temporary.c_str(), H5F_ACC_TRUNC, layout, H5P_DEFAULT), H5Fclose);
-  if (!impl_->file) impl_->fail("cannot create");
+  H5Pset_fapl_core(access, kGrowth, false);
+  impl_->file = Hdf5Handle(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, layout, access), H5Fclose);
+  if (!impl_->file) throw impl_->error("HDF5 cannot begin it");
 }
 
 CheckpointWriter::~CheckpointWriter() = default;
@@ -78,14 +78,11 @@ void CheckpointWriter::put(const std::string& name, std::span<const std::uint8_t
 
 void CheckpointWriter::commit() {
   const Hdf5Silence silence;
-  errno = 0;
-  if (!impl_->file.reset()) impl_->fail("cannot finish");
-  write_seal(impl_->temporary, impl_->at);
-  synchronise(impl_->temporary);
-  if (::rename(impl_->temporary.c_str(), impl_->path.c_str()) != 0)
-    throw_system_error("cannot rename to", impl_->path);
-  impl_->temporary.clear();
-  synchronise(impl_->path.parent_path().empty() ? "." : impl_->path.parent_path());
+  const std::vector<std::uint8_t> rest = impl_->take_image();
+  const auto seal = make_seal(impl_->at, rest);
+  impl_->out.write(seal.data(), seal.size());
+  impl_->out.write(rest.data(), rest.size());
+  impl_->out.commit_durably();
 }
 
 struct CheckpointReader::Impl {

@@ -31,43 +31,40 @@ struct CloseFile {
 };
 using File = std::unique_ptr<std::FILE, CloseFile>;
 
-File open(const std::filesystem::path& path, const char* mode) {
-  File file(std::fopen(path.c_str(), mode));
+File open(const std::filesystem::path& path) {
+  File file(std::fopen(path.c_str(), "rb"));
   if (!file) throw_system_error("cannot open", path);
   return file;
 }
 
-/// Digest of the seal and of the file from byte 512 on; `file` stands there.
-std::array<std::uint8_t, 32> digest_of(Seal seal, std::FILE* file) {
+/// Digest of the seal with an empty digest, to which the rest of the file is added.
+Sha256 begin_digest(Seal seal) {
   seal.digest = {};
   Sha256 hash;
   hash.update(&seal, sizeof seal);
-  std::vector<std::uint8_t> buffer(1 << 18);
-  std::size_t n = 0;
-  while ((n = std::fread(buffer.data(), 1, buffer.size(), file)) > 0) hash.update(buffer.data(), n);
-  return hash.digest();
+  return hash;
 }
 
 }  // namespace
 
-void write_seal(const std::filesystem::path& path, CheckpointTime at) {
+std::array<std::uint8_t, kSealBytes> make_seal(CheckpointTime at, std::span<const std::uint8_t> rest) {
   Seal seal;
-  seal.bytes = std::filesystem::file_size(path);
+  seal.bytes = kSealBytes + rest.size();
   seal.time = at.time;
   seal.step = at.step;
-  const File file = open(path, "r+b");
-  std::fseek(file.get(), kSealBytes, SEEK_SET);
-  seal.digest = digest_of(seal, file.get());
-  std::fseek(file.get(), 0, SEEK_SET);
-  if (std::fwrite(&seal, sizeof seal, 1, file.get()) != 1 || std::fflush(file.get()) != 0)
-    throw_system_error("cannot write", path);
+  Sha256 hash = begin_digest(seal);
+  hash.update(rest.data(), rest.size());
+  seal.digest = hash.digest();
+  std::array<std::uint8_t, kSealBytes> bytes{};
+  std::memcpy(bytes.data(), &seal, sizeof seal);
+  return bytes;
 }
 
 CheckpointTime check_seal(const std::filesystem::path& path) {
   const auto damaged = [&](const std::string& what) {
     return Error(fmt::format("checkpoint {} is damaged: {}", path.string(), what));
   };
-  const File file = open(path, "rb");
+  const File file = open(path);
   Seal seal;
   const Seal expected;
   if (std::fread(&seal, sizeof seal, 1, file.get()) != 1) throw damaged("it is too short");
@@ -80,7 +77,11 @@ CheckpointTime check_seal(const std::filesystem::path& path) {
   if (failed) throw damaged(failed.message());
   if (bytes != seal.bytes) throw damaged(fmt::format("it has {} bytes instead of {}", bytes, seal.bytes));
   std::fseek(file.get(), kSealBytes, SEEK_SET);
-  if (digest_of(seal, file.get()) != seal.digest) throw damaged("its checksum does not fit");
+  Sha256 hash = begin_digest(seal);
+  std::vector<std::uint8_t> buffer(1 << 18);
+  std::size_t n = 0;
+  while ((n = std::fread(buffer.data(), 1, buffer.size(), file.get())) > 0) hash.update(buffer.data(), n);
+  if (hash.digest() != seal.digest) throw damaged("its checksum does not fit");
   return {seal.time, seal.step};
 }
 

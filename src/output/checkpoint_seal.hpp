@@ -1,6 +1,8 @@
 #pragma once
+#include <array>
 #include <cstdint>
 #include <filesystem>
+#include <span>
 
 #include "output/checkpoint.hpp"
 
@@ -8,9 +10,8 @@ namespace ejecta::output {
 
 inline constexpr std::size_t kSealBytes = 512;
 
-/// Writes the seal (magic, version, clock, length, SHA-256 of the rest) into the first 512 bytes of a closed
-/// file.
-void write_seal(const std::filesystem::path& path, CheckpointTime at);
+/// The first 512 bytes of a checkpoint (magic, version, clock, length, SHA-256) whose other bytes are `rest`.
+std::array<std::uint8_t, kSealBytes> make_seal(CheckpointTime at, std::span<const std::uint8_t> rest);
 
 /// Checks the seal; throws Error that names the file and what is wrong with it.
 CheckpointTime check_seal(const std::filesystem::path& path);

@@ -57,6 +57,19 @@ void OutputFile::commit() {
   if (::rename(temporary_.c_str(), path_.c_str()) != 0) throw_system_error("cannot rename to", path_);
 }
 
+void OutputFile::commit_durably() {
+  if (::fsync(fd_) != 0) throw_system_error("cannot flush", temporary_);
+  commit();
+  const std::filesystem::path directory = path_.has_parent_path() ? path_.parent_path() : ".";
+  const int fd = ::open(directory.c_str(), O_RDONLY | O_CLOEXEC);
+  if (fd < 0) throw_system_error("cannot open", directory);
+  const int failed = ::fsync(fd);  // the new name
+  const int code = errno;
+  ::close(fd);
+  errno = code;
+  if (failed != 0) throw_system_error("cannot flush", directory);
+}
+
 void write_file(const std::filesystem::path& path, std::string_view text) {
   OutputFile file(path);
   file.write(text);
@@ -107,16 +120,6 @@ void LineFile::append(std::string_view lines) {
   if (status.st_nlink == 0)
     throw Error(fmt::format("{} was removed while the run was going", path_.string()));
   write_all(fd_, lines.data(), lines.size(), path_);
-}
-
-void synchronise(const std::filesystem::path& path) {
-  const int fd = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
-  if (fd < 0) throw_system_error("cannot open", path);
-  const int failed = ::fsync(fd);
-  const int code = errno;
-  ::close(fd);
-  errno = code;
-  if (failed != 0) throw_system_error("cannot flush", path);
 }
 
 }  // namespace ejecta::output

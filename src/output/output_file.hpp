@@ -19,6 +19,8 @@ class OutputFile {
   void write(const void* data, std::size_t bytes);
   void write(std::string_view text) { write(text.data(), text.size()); }
   void commit();
+  /// As commit(), and the content is on the disk before the file has its name.
+  void commit_durably();
 
  private:
   std::filesystem::path path_, temporary_;
@@ -52,8 +54,5 @@ class LineFile {
 
 /// "cannot write runs/a.run/result.json: No space left on device": throws Error from errno.
 [[noreturn]] void throw_system_error(std::string_view what, const std::filesystem::path& path);
-
-/// Flushes file (or directory) to the disk.
-void synchronise(const std::filesystem::path& path);
 
 }  // namespace ejecta::output
