@@ -236,7 +236,7 @@ struct WallSpec {
 struct SplitterSpec {
   bool enabled = false;
   double distance = 0.25;   ///< m, +x from the jet's axis to the edge
-  double height = 0.045;    ///< m, edge above the path of the undisturbed body there
+  double height = 0.035;    ///< m, edge above the path of the undisturbed body there
   double thickness = 2e-3;  ///< m
   double length = 0.1;      ///< m, downstream extent
 };
