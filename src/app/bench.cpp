@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "app/bench_jet.hpp"
 #include "app/coupled_model.hpp"
 #include "app/exit_code.hpp"
 #include "app/simulation.hpp"
@@ -130,6 +131,7 @@ int bench(const BenchOptions& options) {
   fmt::print(
       "\nThe limit is the time memory needs to deliver every field of a pass once; above 100 % fields stayed "
       "in cache.\n");
+  bench_jet(options.steps);
   return exit_done;
 }
 
