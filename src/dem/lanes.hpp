@@ -18,13 +18,6 @@ inline Lanes root(const Lanes& v) {
 }
 inline double larger(double a, double b) { return a > b ? a : b; }
 inline Lanes larger(const Lanes& a, const Lanes& b) { return a > b ? a : b; }
-inline double smaller(double a, double b) { return a < b ? a : b; }
-inline Lanes smaller(const Lanes& a, const Lanes& b) { return a < b ? a : b; }
-
-template <class T>
-T lanes_of(double v) {
-  return T{} + v;
-}
 
 /// Three components, each a number or lanes of numbers.
 template <class T>

@@ -79,14 +79,4 @@ Wall make_wall(const WallSpec& spec, const Materials& materials, const std::stri
   }
 }
 
-Wall make_plate_wall(const Vec3& edge, double length, double width, double thickness, int material) {
-  Wall wall;
-  wall.name = "splitter";
-  wall.material = material;
-  wall.is_plane = false;
-  wall.solids = {moved(polytope_box(Vec3(0.5 * length, 0.5 * width, 0.5 * thickness)), Mat3::Identity(),
-                       edge + Vec3(0.5 * length, 0, -0.5 * thickness))};
-  return wall;
-}
-
 }  // namespace ejecta

@@ -35,7 +35,5 @@ std::vector<Facet> make_facets(const TriangleMesh& mesh, double thickness);
 
 /// A [[wall]] entry. Throws InputError naming the wall.
 Wall make_wall(const WallSpec& spec, const Materials& materials, const std::string& directory);
-/// The dividing plate: its upper front edge at `edge`, reaching `length` downstream (+x) and `width` across.
-Wall make_plate_wall(const Vec3& edge, double length, double width, double thickness, int material);
 
 }  // namespace ejecta
