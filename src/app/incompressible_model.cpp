@@ -72,9 +72,10 @@ class IncompressibleModel : public FlowModel {
   double stable_dt(double time) override {
     double dt = std::min(flow_->stable_dt(case_.run.courant), case_.run.time_step_max);
     if (!jet_) return dt;
-    // A jet that starts must not outrun the step that lets it in.
+    // A jet that starts must not outrun the step that lets it in, nor open and close unseen within one.
+    dt = std::min(dt, 0.01 * case_.valve.duration);
     const double h = grid_.axis(2).width.front(), z = grid_.axis(2).face.front();
-    for (int n = 0; n < 8; ++n) {
+    for (int n = 0; n < 60; ++n) {
       const double limit = case_.run.courant * h / std::max(jet_->fastest(time + dt, z), 1e-30);
       if (limit >= dt) break;
       dt = std::max(limit, 0.5 * dt);

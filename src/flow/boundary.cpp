@@ -159,39 +159,43 @@ void Boundaries::fill_turbulence(FieldView k, FieldView second, const std::array
          });
 }
 
+void Boundaries::prescribe_face_velocity(std::array<FieldView, 3> q) const {
+  for (int face = 0; face < 6; ++face) {
+    const int d = face / 2;
+    const BoundaryKind kind = this->kind(face);
+    if (!grid_.active(d) || kind == BoundaryKind::periodic || kind == BoundaryKind::open) continue;
+    const Plane& plane = planes_[static_cast<std::size_t>(face)];
+    for_each_index(plane.nb, [&](int b) {
+      for (int a = 0; a < plane.na; ++a) {
+        const Index f = index_on(d, a, b, face % 2 ? grid_.n(d) : 0);
+        q[d](f.i, f.j, f.k) =
+            kind == BoundaryKind::mirror ? Real(0) : at(face, a, b).velocity[static_cast<std::size_t>(d)];
+      }
+    });
+  }
+}
+
 void Boundaries::fill_face_velocity(std::array<FieldView, 3> q, const std::array<FieldView, 3>& u_star,
                                     ConstFieldView p, Real dt) const {
-  for (int d = 0; d < 3; ++d) {
-    if (!grid_.active(d)) continue;
-    const int n = grid_.n(d);
+  prescribe_face_velocity(q);
+  for (int face = 0; face < 6; ++face) {
+    const int d = face / 2, n = grid_.n(d), cell = face % 2 ? n - 1 : 0;
+    if (!grid_.active(d) || kind(face) != BoundaryKind::open) continue;
     const Metrics m = grid_.metrics(d);
-    for (int side = 0; side < 2; ++side) {
-      const int face = 2 * d + side;
-      const BoundaryKind kind = this->kind(face);
-      if (kind == BoundaryKind::periodic) continue;
-      const Plane& plane = planes_[static_cast<std::size_t>(face)];
-      for_each_index(plane.nb, [&](int b) {
-        for (int a = 0; a < plane.na; ++a) {
-          const Index f = index_on(d, a, b, side ? n : 0);
-          Real value = 0;
-          if (kind == BoundaryKind::inflow || kind == BoundaryKind::wall) {
-            value = at(face, a, b).velocity[static_cast<std::size_t>(d)];
-          } else if (kind == BoundaryKind::open) {
-            const int cell = side ? n - 1 : 0;
-            const Index in = index_on(d, a, b, cell);
-            const Real* pc = &p(in.i, in.j, in.k);
-            const std::ptrdiff_t s = stride(p, d);
-            const Real low = m.weight[cell] * pc[-s] + (Real(1) - m.weight[cell]) * pc[0];
-            const Real high = m.weight[cell + 1] * pc[0] + (Real(1) - m.weight[cell + 1]) * pc[s];
-            const Real at_cell = (high - low) / m.width[cell];
-            const Real at_face =
-                side ? (pc[s] - pc[0]) * m.inv_distance[n] : (pc[0] - pc[-s]) * m.inv_distance[0];
-            value = u_star[d](in.i, in.j, in.k) + dt * (at_cell - at_face);
-          }
-          q[d](f.i, f.j, f.k) = value;
-        }
-      });
-    }
+    const Plane& plane = planes_[static_cast<std::size_t>(face)];
+    for_each_index(plane.nb, [&](int b) {
+      for (int a = 0; a < plane.na; ++a) {
+        const Index f = index_on(d, a, b, face % 2 ? n : 0), in = index_on(d, a, b, cell);
+        const Real* pc = &p(in.i, in.j, in.k);
+        const std::ptrdiff_t s = stride(p, d);
+        const Real low = m.weight[cell] * pc[-s] + (Real(1) - m.weight[cell]) * pc[0];
+        const Real high = m.weight[cell + 1] * pc[0] + (Real(1) - m.weight[cell + 1]) * pc[s];
+        const Real at_cell = (high - low) / m.width[cell];
+        const Real at_face =
+            face % 2 ? (pc[s] - pc[0]) * m.inv_distance[n] : (pc[0] - pc[-s]) * m.inv_distance[0];
+        q[d](f.i, f.j, f.k) = u_star[d](in.i, in.j, in.k) + dt * (at_cell - at_face);
+      }
+    });
   }
 }
 

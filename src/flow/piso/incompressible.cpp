@@ -282,6 +282,7 @@ void Incompressible::correct(const SolidMask& solids, Real dt) {
   ScopedTimer timer(times_.correction);
   boundaries_.fill_pressure(phi_.view(), views(q_), false);
   apply_correction(grid_, phi_.view(), dt, views(q_), views(u_star_), p_.view());
+  boundaries_.prescribe_face_velocity(views(q_));
   std::swap(u_, u_star_);
 }
 

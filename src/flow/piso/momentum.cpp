@@ -103,14 +103,16 @@ void predict(const Grid& grid, const MomentumTerms& t) {
       using No = std::false_type;
       if (source) active ? finish(Yes{}, Yes{}) : finish(Yes{}, No{});
       else active ? finish(No{}, Yes{}) : finish(No{}, No{});
-      if (hoop &&
-          c == 0) {  // - tau_theta_theta / r, tau = 2 nu u_r / r (nu u_r / r without the transposed gradient)
+      if (hoop && c == 0) {
+        // - tau_theta_theta / r, tau = 2 nu u_r / r (nu u_r / r without the transposed gradient), implicit:
+        // next to the axis it is stiffer than any other term.
         const Real* eddy = kTurbulent ? t.eddy_viscosity.row(j, k) : nullptr;
         const Real* r = m[0].centre;
         const Real nu = t.viscosity;
         for_each_lane(0, grid.nx(), [=](int i) {
-          const Real viscosity = kTurbulent ? Real(2) * (nu + eddy[i]) : nu;
-          out[i] -= wb * dt * viscosity * now[i] / (r[i] * r[i]);
+          const Real rate = wb * dt * (kTurbulent ? Real(2) * (nu + eddy[i]) : nu) / (r[i] * r[i]);
+          const Real base = base_a * old[i] + base_b * now[i];
+          out[i] = base + (out[i] - base - rate * now[i]) / (Real(1) + rate);
         });
       }
     }
