@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -114,6 +115,35 @@ Real reduce_max(const Range3& r, Real floor, const Kernel& kernel) {
       nan = nan || bad;
     }
   return nan ? std::numeric_limits<Real>::quiet_NaN() : result;
+}
+
+/// The three largest of kernel(i, j, k, a, b, c), which sets a, b and c, in one pass; at least 0. A NaN
+/// anywhere is returned as NaN.
+template <class Kernel>
+std::array<Real, 3> reduce_max3(const Range3& r, const Kernel& kernel) {
+  Real a = 0, b = 0, c = 0;
+  bool nan = false;
+#pragma omp parallel for schedule(static) reduction(max : a, b, c) reduction(|| : nan)
+  for (int k = r.k0; k < r.k1; ++k)
+    for (int j = r.j0; j < r.j1; ++j) {
+      Real row_a = 0, row_b = 0, row_c = 0;
+      int bad = 0;
+#pragma omp simd reduction(max : row_a, row_b, row_c) reduction(| : bad)
+      for (int i = r.i0; i < r.i1; ++i) {
+        Real va, vb, vc;
+        kernel(i, j, k, va, vb, vc);
+        row_a = va > row_a ? va : row_a;
+        row_b = vb > row_b ? vb : row_b;
+        row_c = vc > row_c ? vc : row_c;
+        bad |= !(va == va) | !(vb == vb) | !(vc == vc);
+      }
+      a = row_a > a ? row_a : a;
+      b = row_b > b ? row_b : b;
+      c = row_c > c ? row_c : c;
+      nan = nan || bad;
+    }
+  if (nan) a = b = c = std::numeric_limits<Real>::quiet_NaN();
+  return {a, b, c};
 }
 
 }  // namespace ejecta

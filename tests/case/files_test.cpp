@@ -1,3 +1,5 @@
+#include <unistd.h>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -16,7 +18,7 @@ namespace {
 
 class OddFile : public testing::Test {
  protected:
-  fs::path folder = fs::path(testing::TempDir()) / "ejecta-odd-files";
+  fs::path folder = fs::path(testing::TempDir()) / ("ejecta-odd-files-" + std::to_string(getpid()));
   void SetUp() override { fs::create_directories(folder); }
   void TearDown() override { fs::remove_all(folder); }
 

@@ -5,7 +5,6 @@ import sys
 from pathlib import Path
 
 from paraview import simple
-from paraview import servermanager
 
 
 def opened(path):
@@ -16,7 +15,8 @@ def opened(path):
 
 def data_at(reader, time):
     reader.UpdatePipeline(time)
-    return servermanager.Fetch(reader)
+    # The reader's own output: a Fetch() of a rectilinear grid is a copy with mixed-up coordinates.
+    return reader.GetClientSideObject().GetOutputDataObject(0)
 
 
 def check(condition, message):

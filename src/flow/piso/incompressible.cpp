@@ -150,14 +150,15 @@ double Incompressible::stable_dt(double courant) {
                             return by_courant * r.convection(i, j, k) + r.viscosity(i, j, k, Real(0));
                           })));
   // With eddies: beyond the explicit limit increments are smoothed, up to the convective limit.
-  explicit_dt_ =
-      1.0 / std::max(1e-30, double(reduce_max(grid_.range(), Real(0), [=](int i, int j, int k) {
-                       return by_courant * r.convection(i, j, k) + r.viscosity(i, j, k, r.nut(i, j, k));
-                     })));
-  largest_viscosity_ =
-      setup_.viscosity +
-      double(reduce_max(grid_.range(), Real(0), [=](int i, int j, int k) { return r.nut(i, j, k); }));
-  return courant / std::max(1e-30, this->courant(1.0));
+  const auto [both, eddy, convection] =
+      reduce_max3(grid_.range(), [=](int i, int j, int k, Real& sum, Real& nut, Real& rate) {
+        nut = r.nut(i, j, k);
+        rate = r.convection(i, j, k);
+        sum = by_courant * rate + r.viscosity(i, j, k, nut);
+      });
+  explicit_dt_ = 1.0 / std::max(1e-30, double(both));
+  largest_viscosity_ = setup_.viscosity + double(eddy);
+  return courant / std::max(1e-30, double(convection));
 }
 
 double Incompressible::courant(double dt) const {
@@ -208,14 +209,7 @@ void Incompressible::predict(double a, double b, double time, Real dt) {
   t.increment_only = smoothing_;
   predict_momentum(grid_, t);
   if (!smoothing_) return;
-  for (int c = 0; c < 3; ++c) {
-    smoother_.apply(u_star_[c].view());
-    const Real wa = t.a, wb = t.b;
-    for_each_cell(grid_.range(),
-                  [=, out = u_star_[c].view(), old = t.old[c], now = t.u[c]](int i, int j, int k) {
-                    out(i, j, k) += wa * old(i, j, k) + wb * now(i, j, k);
-                  });
-  }
+  for (int c = 0; c < 3; ++c) smoother_.apply(u_star_[c].view(), {t.old[c], t.a, t.u[c], t.b});
 }
 
 void Incompressible::force(SolidMask& solids, double weight) {

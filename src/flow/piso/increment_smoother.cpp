@@ -66,7 +66,7 @@ void IncrementSmoother::invert(int d, double nu_dt) {
   }
 }
 
-void IncrementSmoother::apply(FieldView delta) const {
+void IncrementSmoother::apply(FieldView delta, const Base& base) const {
   const int ld = (nx_ + kLanes - 1) / kLanes * kLanes;
   const ConstFieldView x = inverse_x_.view(), y = inverse_y_.view();
   for_each_index(nz_, [&](int k) {
@@ -79,20 +79,27 @@ void IncrementSmoother::apply(FieldView delta) const {
     else
       for (int j = 0; j < ny_; ++j) plane[j * ldp] = scratch[j * ld];
   });
-  if (!active_[2]) return;
   for_each_index(ny_, [&](int j) {
-    for (int k = 0; k < nz_; ++k) {
+    for (int k = 0; active_[2] && k < nz_; ++k) {
       const std::size_t at = static_cast<std::size_t>(k);
       Real* row = delta.row(j, k);
       const Real* before = delta.row(j, k - 1);
       const Real pivot = pivot_[at], below = k > 0 ? below_[at] : Real(0);
       for_each_lane(0, nx_, [=](int i) { row[i] = (row[i] - below * before[i]) * pivot; });
     }
-    for (int k = nz_ - 2; k >= 0; --k) {
+    // Backward; a row is added to its base as soon as the row below no longer needs it.
+    for (int k = nz_ - 1; k >= 0; --k) {
       Real* row = delta.row(j, k);
-      const Real* after = delta.row(j, k + 1);
-      const Real above = above_[static_cast<std::size_t>(k)];
-      for_each_lane(0, nx_, [=](int i) { row[i] -= above * after[i]; });
+      Real* below = k > 0 ? delta.row(j, k - 1) : nullptr;
+      const Real above = active_[2] && k > 0 ? above_[static_cast<std::size_t>(k) - 1] : Real(0);
+      const Real *one = base.one.row(j, k), *two = base.two.row(j, k);
+      const Real a = base.a, b = base.b;
+      if (below)
+        for_each_lane(0, nx_, [=](int i) {
+          below[i] -= above * row[i];
+          row[i] += a * one[i] + b * two[i];
+        });
+      else for_each_lane(0, nx_, [=](int i) { row[i] += a * one[i] + b * two[i]; });
     }
   });
 }

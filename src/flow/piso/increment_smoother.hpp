@@ -21,7 +21,15 @@ class IncrementSmoother {
   explicit IncrementSmoother(const Grid& grid);
   /// nu dt, m2. Allocates nothing.
   void prepare(double nu_dt);
-  void apply(FieldView delta) const;
+  /// What the smoothed increment is added to: a one + b two.
+  struct Base {
+    ConstFieldView one;
+    Real a;
+    ConstFieldView two;
+    Real b;
+  };
+  /// delta becomes base + smoothed delta.
+  void apply(FieldView delta, const Base& base) const;
 
  private:
   void invert(int d, double nu_dt);

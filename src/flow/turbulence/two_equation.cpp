@@ -226,9 +226,8 @@ void TwoEquation::measure_walls(const Boundaries& b) {
 void TwoEquation::smooth(const IncrementSmoother& smoother, ConstFieldView now, FieldView next,
                          Real least) const {
   for_each_cell(grid_.range(), [=](int i, int j, int k) { next(i, j, k) -= now(i, j, k); });
-  smoother.apply(next);
-  for_each_cell(grid_.range(),
-                [=](int i, int j, int k) { next(i, j, k) = std::max(now(i, j, k) + next(i, j, k), least); });
+  smoother.apply(next, {now, Real(1), now, Real(0)});
+  for_each_cell(grid_.range(), [=](int i, int j, int k) { next(i, j, k) = std::max(next(i, j, k), least); });
 }
 
 /// Equilibrium values in the cells next to walls and the wall's eddy viscosity in the ghosts (Launder &
