@@ -2,3 +2,6 @@
 find_package(Python3 REQUIRED COMPONENTS Interpreter)
 add_test(NAME app.cli COMMAND ${Python3_EXECUTABLE} ${CMAKE_CURRENT_LIST_DIR}/cli_test.py $<TARGET_FILE:ejecta>)
 set_tests_properties(app.cli PROPERTIES LABELS fast)
+add_test(NAME app.resume COMMAND ${Python3_EXECUTABLE} ${CMAKE_CURRENT_LIST_DIR}/resume_test.py $<TARGET_FILE:ejecta>
+         ${CMAKE_CURRENT_LIST_DIR}/small-ejection.toml ${CMAKE_CURRENT_BINARY_DIR}/resume)
+set_tests_properties(app.resume PROPERTIES LABELS fast TIMEOUT 600)

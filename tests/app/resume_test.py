@@ -1,0 +1,66 @@
+"""A run that is killed again and again and resumed gives the bits of the undisturbed run.
+Usage: resume_test.py EJECTA CASE SCRATCH [KILLS]"""
+
+import json
+import random
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+TIMES = {"wall_time_s", "cell_steps_per_s", "operators"}  # what may differ
+
+
+def start(ejecta, case, out, resume):
+    return subprocess.Popen([ejecta, "run", case, "--quiet", "--threads", "1", "--out", out, "--resume" if resume else "--force"])
+
+
+def result(out):
+    r = json.loads((Path(out) / "result.json").read_text())
+    return {key: value for key, value in r.items() if key not in TIMES}
+
+
+def compare(whole, disturbed):
+    if result(whole) != result(disturbed):
+        raise SystemExit("failed: result.json differs")
+    for kind in ("history/*.csv", "fields/*.vt*"):
+        for file in Path(whole).glob(kind):
+            if file.read_bytes() != (Path(disturbed) / file.relative_to(whole)).read_bytes():
+                raise SystemExit(f"failed: {file.name} differs")
+
+
+def main(ejecta, case, scratch, kills=4):
+    shutil.rmtree(scratch, ignore_errors=True)
+    Path(scratch).mkdir(parents=True)
+    whole, disturbed = f"{scratch}/whole.run", f"{scratch}/disturbed.run"
+    began = time.time()
+    if start(ejecta, case, whole, False).wait() != 0:
+        raise SystemExit("failed: the undisturbed run")
+    duration = time.time() - began
+    draw = random.Random(7)
+    done = 0
+    while done < kills:
+        shutil.rmtree(disturbed, ignore_errors=True)
+        resume = False
+        while True:
+            run = start(ejecta, case, disturbed, resume)
+            try:
+                code = run.wait(timeout=draw.uniform(0.2, 0.9) * duration)
+            except subprocess.TimeoutExpired:
+                hard = draw.random() < 0.5
+                run.send_signal(signal.SIGKILL if hard else signal.SIGTERM)
+                code = run.wait()
+                if code not in (-signal.SIGKILL, 4, 0):
+                    raise SystemExit(f"failed: exit code {code} of a run that was asked to stop")
+                done += 1
+            if code == 0:
+                break
+            resume = bool(list((Path(disturbed) / "checkpoints").glob("*.h5")))
+        compare(whole, disturbed)
+    print(f"{done} kills, every resumed run equal to the bit")
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:4], *map(int, sys.argv[4:]))
