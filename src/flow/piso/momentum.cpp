@@ -60,13 +60,6 @@ struct MomentumFlux {
   }
 };
 
-/// p on the upper minus p on the lower D-face of a cell, over its width.
-inline Real pressure_gradient(const Real* p, std::ptrdiff_t s, const Metrics& m, int at) {
-  const Real low = m.weight[at] * p[-s] + (Real(1) - m.weight[at]) * p[0];
-  const Real high = m.weight[at + 1] * p[0] + (Real(1) - m.weight[at + 1]) * p[s];
-  return (high - low) / m.width[at];
-}
-
 template <bool kTurbulent>
 void predict(const Grid& grid, const MomentumTerms& t) {
   const MomentumFlux<kTurbulent> face{t.u,
@@ -94,7 +87,7 @@ void predict(const Grid& grid, const MomentumTerms& t) {
         for_each_lane(0, nx, [=](int i) {
           const int at = c == 0 ? i : c == 1 ? j : k;
           Real rate = acceleration - b[i] * inv_volume[i] * inv_jk;
-          if constexpr (with_pressure) rate -= pressure_gradient(p + i, s, mc, at);
+          if constexpr (with_pressure) rate -= cell_gradient(p + i, s, mc, at);
           if constexpr (with_source) rate += source[i];
           out[i] = base_a * old[i] + base_b * now[i] + wb * dt * rate;
         });

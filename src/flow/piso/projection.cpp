@@ -7,13 +7,6 @@
 namespace ejecta {
 namespace {
 
-/// Gauss gradient along one direction: face values linear between centres.
-inline Real cell_gradient(const Real* p, std::ptrdiff_t s, const Metrics& m, int at) {
-  const Real low = m.weight[at] * p[-s] + (Real(1) - m.weight[at]) * p[0];
-  const Real high = m.weight[at + 1] * p[0] + (Real(1) - m.weight[at + 1]) * p[s];
-  return (high - low) / m.width[at];
-}
-
 template <int D>
 void faces_along(const Grid& grid, ConstFieldView u, ConstFieldView p, Real dt, FieldView q) {
   const Metrics m = grid.metrics(D);

@@ -135,10 +135,4 @@ void FastDiagonalPoisson::solve_periodic_z() {
   });
 }
 
-double FastDiagonalPoisson::flops() const {
-  const double cells = double(nx_) * ny_ * nz_;
-  const double transforms = 4.0 * (nx_ + ny_) + (z_periodic_ ? 4.0 * nz_ : 0.0);
-  return cells * (transforms + (z_periodic_ ? 1.0 : 6.0));
-}
-
 }  // namespace ejecta

@@ -25,8 +25,6 @@ class FastDiagonalPoisson {
   /// phi = solution of rhs; only inner cells are read and written. The two may be the same field.
   void solve(ConstFieldView rhs, FieldView phi);
 
-  /// Floating-point operations of a solve, for the benchmark's roofline.
-  double flops() const;
 
  private:
   struct Axis1D {
