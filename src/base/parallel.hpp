@@ -5,7 +5,7 @@
 #include <limits>
 #include <vector>
 
-#include "base/real.hpp"
+#include "base/simd.hpp"
 
 /// The only place that knows how loops run. A kernel is a small functor over plain views: no allocation,
 /// no virtual call, no container inside. Loops run over planes of constant k in parallel and over i in SIMD.
@@ -23,15 +23,23 @@ struct Range3 {
 int thread_count();
 void set_thread_count(int threads);
 
-/// kernel(i, j, k) for every cell; any order, no dependence between cells.
+/// kernel(i) for i in [i0, i1) in SIMD on this thread, whole registers at a time: up to kLanes - 1 entries past
+/// i1 are computed too. Rows of a Field, of Metrics and of scratch sized by whole registers have room for
+/// them; what lands there is padding or ghosts that are filled again before they are read.
+template <class Kernel>
+inline void for_each_lane(int i0, int i1, const Kernel& kernel) {
+  for (int i = i0; i < i1; i += kLanes) {
+#pragma omp simd
+    for (int lane = 0; lane < kLanes; ++lane) kernel(i + lane);
+  }
+}
+
+/// kernel(i, j, k) for every cell; any order, no dependence between cells. Rows run as in for_each_lane.
 template <class Kernel>
 void for_each_cell(const Range3& r, const Kernel& kernel) {
 #pragma omp parallel for schedule(static)
   for (int k = r.k0; k < r.k1; ++k)
-    for (int j = r.j0; j < r.j1; ++j) {
-#pragma omp simd
-      for (int i = r.i0; i < r.i1; ++i) kernel(i, j, k);
-    }
+    for (int j = r.j0; j < r.j1; ++j) for_each_lane(r.i0, r.i1, [&](int i) { kernel(i, j, k); });
 }
 
 /// kernel(n) for n in [0, count), e.g. one plane, one row, one body at a time.
@@ -39,13 +47,6 @@ template <class Kernel>
 void for_each_index(int count, const Kernel& kernel) {
 #pragma omp parallel for schedule(static)
   for (int n = 0; n < count; ++n) kernel(n);
-}
-
-/// kernel(i) for i in [i0, i1) in SIMD on this thread.
-template <class Kernel>
-inline void for_each_lane(int i0, int i1, const Kernel& kernel) {
-#pragma omp simd
-  for (int i = i0; i < i1; ++i) kernel(i);
 }
 
 /// kernel(begin, end) for one contiguous chunk of [0, count) a thread: for sweeps that reuse what the

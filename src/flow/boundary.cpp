@@ -7,6 +7,10 @@
 namespace ejecta {
 namespace {
 
+/// The two directions across d, in the order of storage.
+int first_across(int d) { return d == 0 ? 1 : 0; }
+int second_across(int d) { return d == 2 ? 1 : 2; }
+
 /// Cell indices on a face normal to d, from in-plane indices and the index along d.
 struct Index {
   int i, j, k;
@@ -14,7 +18,7 @@ struct Index {
 
 Index index_on(int d, int a, int b, int along) {
   if (d == 0) return {along, a, b};
-  if (d == 1) return {b, along, a};
+  if (d == 1) return {a, along, b};
   return {a, b, along};
 }
 
@@ -25,8 +29,8 @@ Boundaries::Boundaries(const Grid& grid, std::array<Boundary, 6> faces)
   for (int face = 0; face < 6; ++face) {
     const int d = face / 2;
     Plane& p = planes_[static_cast<std::size_t>(face)];
-    p.na = grid.n((d + 1) % 3);
-    p.nb = grid.n((d + 2) % 3);
+    p.na = grid.n(first_across(d));
+    p.nb = grid.n(second_across(d));
     p.states.resize(static_cast<std::size_t>(p.na) * static_cast<std::size_t>(p.nb));
   }
 }
@@ -42,7 +46,7 @@ void Boundaries::update(double time) {
     const Boundary& boundary = faces_[static_cast<std::size_t>(face)];
     Plane& p = planes_[static_cast<std::size_t>(face)];
     if (!boundary.state || (p.fresh && !boundary.varies)) continue;
-    const int d = face / 2, da = (d + 1) % 3, db = (d + 2) % 3;
+    const int d = face / 2, da = first_across(d), db = second_across(d);
     const Axis& axis = grid_.axis(d);
     for_each_index(p.nb, [&](int b) {
       for (int a = 0; a < p.na; ++a) {
@@ -58,105 +62,137 @@ void Boundaries::update(double time) {
   }
 }
 
-/// ghost(face, a, b, inner, layer, outflow...) -> value; directions in order, each including the ghosts
-/// already set, so that edges are filled too.
-template <class Ghost>
-void Boundaries::fill(FieldView f, const Ghost& ghost) const {
-  for (int d = 0; d < 3; ++d) {
-    if (!grid_.active(d)) continue;
-    const int da = (d + 1) % 3, db = (d + 2) % 3, n = grid_.n(d);
-    const int ga = da < d && grid_.active(da) ? kGhosts : 0, gb = db < d && grid_.active(db) ? kGhosts : 0;
-    const int na = grid_.n(da), nb = grid_.n(db);
-    for (int side = 0; side < 2; ++side) {
-      const int face = 2 * d + side;
-      const bool periodic = kind(face) == BoundaryKind::periodic;
-      for_each_index(nb + 2 * gb, [&, face](int row) {
-        const int b = row - gb;
-        for (int a = -ga; a < na + ga; ++a)
-          for (int layer = 0; layer < kGhosts; ++layer) {
-            const Index out = index_on(d, a, b, side ? n + layer : -1 - layer);
-            const int source = periodic ? (side ? layer : n - 1 - layer) : (side ? n - 1 - layer : layer);
-            const Index in = index_on(d, a, b, std::clamp(source, 0, n - 1));
-            const Real inner = f(in.i, in.j, in.k);
-            f(out.i, out.j, out.k) = periodic
-                                         ? inner
-                                         : ghost(face, std::clamp(a, 0, na - 1), std::clamp(b, 0, nb - 1),
-                                                 inner, layer, std::array<int, 3>{a, b, n});
-          }
+Boundaries::Side Boundaries::side(const FieldView& f, int face) const {
+  Side s{};
+  s.d = face / 2;
+  s.upper = face % 2;
+  const int da = first_across(s.d), db = second_across(s.d);
+  const std::ptrdiff_t step = stride(f, s.d);
+  s.na = grid_.n(da);
+  s.nb = grid_.n(db);
+  // Directions are filled in order, each with the ghosts already set, so that edges are filled too.
+  s.ghosts_a = da < s.d && grid_.active(da) ? kGhosts : 0;
+  s.ghosts_b = db < s.d && grid_.active(db) ? kGhosts : 0;
+  s.first = s.upper ? (grid_.n(s.d) - 1) * step : 0;
+  s.step_a = stride(f, da);
+  s.step_b = stride(f, db);
+  s.outward = s.upper ? step : -step;
+  s.face = s.upper ? step : 0;
+  return s;
+}
+
+/// ghost(field, layer, a, b, cell, inner) -> value of a ghost; a and b clamped to the face, `cell` the offset of
+/// the boundary cell, `inner` the value as far inside as the ghost is outside (periodic: on the other side).
+template <std::size_t kN, class Ghost>
+void Boundaries::fill_side(const std::array<FieldView, kN>& fields, const Side& s, bool periodic,
+                           const Ghost& ghost) const {
+  const int n = grid_.n(s.d);
+  for_each_index(s.nb + 2 * s.ghosts_b, [&](int row) {
+    const int b = std::clamp(row - s.ghosts_b, 0, s.nb - 1);
+    const std::ptrdiff_t start = s.first + (row - s.ghosts_b) * s.step_b;
+    for (std::size_t c = 0; c < kN; ++c)
+      for (int layer = 0; layer < kGhosts; ++layer) {
+        Real* origin = fields[c].origin;
+        const std::ptrdiff_t out = (layer + 1) * s.outward, in = -(periodic ? n - 1 - layer : layer) * s.outward;
+        for (int a = -s.ghosts_a; a < s.na + s.ghosts_a; ++a) {
+          const std::ptrdiff_t cell = start + a * s.step_a;
+          origin[cell + out] = ghost(c, layer, std::clamp(a, 0, s.na - 1), b, cell, origin[cell + in]);
+        }
+      }
+  });
+}
+
+namespace {
+
+/// A copy of the value inside.
+constexpr auto kCopy = [](std::size_t, int, int, int, std::ptrdiff_t, Real inner) { return inner; };
+
+}  // namespace
+
+void Boundaries::fill_zero_gradient(FieldView f) const {
+  for (int face = 0; face < 6; ++face)
+    if (grid_.active(face / 2))
+      fill_side<1>({f}, side(f, face), kind(face) == BoundaryKind::periodic, kCopy);
+}
+
+void Boundaries::fill_velocity(std::array<FieldView, 3> u, const std::array<FieldView, 3>& q) const {
+  for (int face = 0; face < 6; ++face) {
+    if (!grid_.active(face / 2)) continue;
+    const Side s = side(u[0], face);
+    const std::size_t d = static_cast<std::size_t>(s.d);
+    const Real* through_face = q[d].origin + s.face;
+    switch (kind(face)) {
+      case BoundaryKind::periodic:
+        fill_side(u, s, true, kCopy);
+        break;
+      case BoundaryKind::mirror:
+        fill_side(u, s, false, [d](std::size_t c, int, int, int, std::ptrdiff_t, Real inner) {
+          return c == d ? -inner : inner;
+        });
+        break;
+      case BoundaryKind::open:
+        // Fluid that comes in through an open boundary brings no tangential momentum.
+        fill_side(u, s, false, [=](std::size_t c, int, int, int, std::ptrdiff_t cell, Real inner) {
+          const Real through = through_face[cell];
+          const bool enters = s.upper ? through < 0 : through > 0;
+          return !enters ? inner : c == d ? Real(2) * through - inner : -inner;
+        });
+        break;
+      default:
+        fill_side(u, s, false, [=, this](std::size_t c, int, int a, int b, std::ptrdiff_t, Real inner) {
+          return Real(2) * at(face, a, b).velocity[c] - inner;
+        });
+    }
+  }
+}
+
+void Boundaries::fill_pressure(FieldView p, const std::array<FieldView, 3>& q, bool total) const {
+  for (int face = 0; face < 6; ++face) {
+    if (!grid_.active(face / 2)) continue;
+    const Boundary& boundary = (*this)[face];
+    const Side s = side(p, face);
+    if (boundary.kind == BoundaryKind::mirror || boundary.kind == BoundaryKind::periodic) {
+      fill_side<1>({p}, s, boundary.kind == BoundaryKind::periodic, kCopy);
+    } else if (boundary.kind == BoundaryKind::open) {
+      const Real fixed = total ? static_cast<Real>(boundary.pressure) : Real(0);
+      const Real dynamic = total && boundary.total_pressure ? Real(0.5) : Real(0);
+      const Real* through_face = q[static_cast<std::size_t>(s.d)].origin + s.face;
+      fill_side<1>({p}, s, false, [=](std::size_t, int, int, int, std::ptrdiff_t cell, Real inner) {
+        const Real through = through_face[cell];
+        const bool enters = s.upper ? through < 0 : through > 0;
+        return Real(2) * (fixed - (enters ? dynamic * through * through : Real(0))) - inner;
+      });
+    } else {
+      // Linear extrapolation keeps the pressure force second-order next to walls and inflows.
+      const Metrics m = grid_.metrics(s.d);
+      const int n = grid_.n(s.d), cell = s.upper ? n - 1 : 0, next = s.upper ? n - 2 : 1;
+      const Real inv_distance = s.upper ? m.inv_distance[n - 1] : m.inv_distance[1];
+      const Real distance[kGhosts] = {m.width[cell], Real(1.5) * m.width[cell] + Real(0.5) * m.width[next]};
+      const Real* origin = p.origin;
+      fill_side<1>({p}, s, false, [=](std::size_t, int layer, int, int, std::ptrdiff_t at, Real) {
+        return origin[at] + (origin[at] - origin[at - s.outward]) * inv_distance * distance[layer];
       });
     }
   }
 }
 
-void Boundaries::fill_zero_gradient(FieldView f) const {
-  fill(f, [](int, int, int, Real inner, int, const std::array<int, 3>&) { return inner; });
-}
-
-void Boundaries::fill_velocity(std::array<FieldView, 3> u, const std::array<FieldView, 3>& q) const {
-  for (int c = 0; c < 3; ++c)
-    fill(u[c], [&, c](int face, int a, int b, Real inner, int, const std::array<int, 3>& at) -> Real {
-      const int d = face / 2;
-      switch (kind(face)) {
-        case BoundaryKind::mirror:
-          return c == d ? -inner : inner;
-        case BoundaryKind::open: {
-          // Fluid that comes in through an open boundary brings no tangential momentum.
-          const Index f = index_on(d, a, b, face % 2 ? at[2] : 0);
-          const Real through = q[d](f.i, f.j, f.k);
-          const bool enters = face % 2 ? through < 0 : through > 0;
-          if (!enters) return inner;
-          return c == d ? Real(2) * through - inner : -inner;
-        }
-        default:
-          return Real(2) * this->at(face, a, b).velocity[c] - inner;
-      }
-    });
-}
-
-void Boundaries::fill_pressure(FieldView p, const std::array<FieldView, 3>& q, bool total) const {
-  fill(p, [&](int face, int a, int b, Real inner, int layer, const std::array<int, 3>& at) -> Real {
-    const Boundary& boundary = (*this)[face];
-    const int d = face / 2, n = at[2];
-    if (boundary.kind == BoundaryKind::mirror) return inner;
-    if (boundary.kind == BoundaryKind::open) {
-      Real fixed = 0;
-      if (total) {
-        fixed = static_cast<Real>(boundary.pressure);
-        if (boundary.total_pressure) {
-          const Index f = index_on(d, a, b, face % 2 ? n : 0);
-          const Real through = q[d](f.i, f.j, f.k);
-          if (face % 2 ? through < 0 : through > 0) fixed -= Real(0.5) * through * through;
-        }
-      }
-      return Real(2) * fixed - inner;
-    }
-    // Linear extrapolation keeps the pressure force second-order next to walls and inflows.
-    if (n < 2) return inner;
-    const Metrics m = grid_.metrics(d);
-    const Index i0 = index_on(d, at[0], at[1], face % 2 ? n - 1 : 0);
-    const Index i1 = index_on(d, at[0], at[1], face % 2 ? n - 2 : 1);
-    const Real p0 = p(i0.i, i0.j, i0.k), p1 = p(i1.i, i1.j, i1.k);
-    const Real slope = (p0 - p1) * (face % 2 ? m.inv_distance[n - 1] : m.inv_distance[1]);
-    const int cell = face % 2 ? n - 1 : 0;
-    const int next = face % 2 ? n - 2 : 1;
-    const Real distance = layer == 0 ? m.width[cell] : Real(1.5) * m.width[cell] + Real(0.5) * m.width[next];
-    return p0 + slope * distance;
-  });
-}
-
 void Boundaries::fill_turbulence(FieldView k, FieldView second, const std::array<FieldView, 3>& q) const {
-  for (int v = 0; v < 2; ++v)
-    fill(v == 0 ? k : second,
-         [&, v](int face, int a, int b, Real inner, int, const std::array<int, 3>& at) -> Real {
-           const int d = face / 2;
-           if (kind(face) != BoundaryKind::inflow && kind(face) != BoundaryKind::open) return inner;
-           const BoundaryState& state = this->at(face, a, b);
-           const Index f = index_on(d, a, b, face % 2 ? at[2] : 0);
-           const Real through = q[d](f.i, f.j, f.k);
-           const bool enters = face % 2 ? through < 0 : through > 0;
-           if (!enters || state.k <= 0) return inner;
-           return v == 0 ? state.k : state.second;
-         });
+  const std::array<FieldView, 2> both{k, second};
+  for (int face = 0; face < 6; ++face) {
+    if (!grid_.active(face / 2)) continue;
+    const Side s = side(k, face);
+    if (kind(face) != BoundaryKind::inflow && kind(face) != BoundaryKind::open) {
+      fill_side(both, s, kind(face) == BoundaryKind::periodic, kCopy);
+      continue;
+    }
+    const Real* through_face = q[static_cast<std::size_t>(s.d)].origin + s.face;
+    fill_side(both, s, false, [=, this](std::size_t c, int, int a, int b, std::ptrdiff_t cell, Real inner) {
+      const Real through = through_face[cell];
+      const BoundaryState& state = at(face, a, b);
+      const bool enters = s.upper ? through < 0 : through > 0;
+      return !enters || state.k <= 0 ? inner : c == 0 ? state.k : state.second;
+    });
+  }
 }
 
 void Boundaries::prescribe_face_velocity(std::array<FieldView, 3> q) const {

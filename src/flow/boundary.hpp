@@ -40,8 +40,8 @@ class Boundaries {
   /// Evaluates the states at `time`; those that do not vary only once.
   void update(double time);
 
-  /// State on face cell (a, b) of a face normal to d; a, b index the other two directions in cyclic order
-  /// x -> (y, z), y -> (z, x), z -> (x, y).
+  /// State on face cell (a, b) of a face normal to d; a, b index the other two directions in the order of
+  /// storage: x -> (y, z), y -> (x, z), z -> (x, y).
   const BoundaryState& at(int face, int a, int b) const {
     const Plane& p = planes_[static_cast<std::size_t>(face)];
     return p
@@ -69,8 +69,17 @@ class Boundaries {
     std::vector<BoundaryState> states;
     bool fresh = false;
   };
-  template <class Ghost>
-  void fill(FieldView f, const Ghost& ghost) const;
+  /// What is needed to walk over one face.
+  struct Side {
+    int d, na, nb, ghosts_a, ghosts_b;
+    std::ptrdiff_t first, step_a, step_b, outward;  ///< of the boundary cell (0, 0), between cells
+    std::ptrdiff_t face;                            ///< from a boundary cell to the face, in a face field
+    bool upper;
+  };
+  Side side(const FieldView& f, int face) const;
+  template <std::size_t kN, class Ghost>
+  void fill_side(const std::array<FieldView, kN>& fields, const Side& s, bool periodic,
+                 const Ghost& ghost) const;
 
   const Grid& grid_;
   std::array<Boundary, 6> faces_;

@@ -53,7 +53,7 @@ inline Real derivative(const Real* at, std::ptrdiff_t step, Real inv_span) {
 inline Real cell_gradient(const Real* p, std::ptrdiff_t s, const Metrics& m, int at) {
   const Real low = m.weight[at] * p[-s] + (Real(1) - m.weight[at]) * p[0];
   const Real high = m.weight[at + 1] * p[0] + (Real(1) - m.weight[at + 1]) * p[s];
-  return (high - low) / m.width[at];
+  return (high - low) * m.inv_width[at];
 }
 
 }  // namespace ejecta

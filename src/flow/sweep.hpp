@@ -1,5 +1,6 @@
 #pragma once
 #include <algorithm>
+#include <utility>
 
 #include "base/parallel.hpp"
 #include "base/simd.hpp"
@@ -20,51 +21,48 @@ template <int kN, class Face, class Update>
 void sweep(const Grid& grid, const Face& face, const Update& update) {
   const int nx = grid.nx(), ny = grid.ny();
   const bool in_x = grid.active(0), in_y = grid.active(1), in_z = grid.active(2);
-  const int ld = (nx + 1 + kLanes - 1) / kLanes * kLanes;
+  const int ld = (nx + 1 + kLanes) / kLanes * kLanes;  // one lane more is read than a row of faces has
   for_each_chunk(grid.nz(), [&](int k0, int k1) {
-    Real* scratch = thread_scratch(
-        static_cast<std::size_t>(kN) * static_cast<std::size_t>(ld) * static_cast<std::size_t>(ny + 4), 1);
+    const std::size_t rows_needed = static_cast<std::size_t>(kN) * static_cast<std::size_t>(2 * ny + 5);
+    Real* scratch = thread_scratch(rows_needed * static_cast<std::size_t>(ld), 1);
     const auto rows = [&](int slot, Real*(&out)[kN]) {
       for (int n = 0; n < kN; ++n) out[n] = scratch + (static_cast<std::ptrdiff_t>(slot) * kN + n) * ld;
     };
-    Real *balance[kN], *fresh[kN], *below_y[kN], *through_x[kN], *below_z[kN];
+    const auto swap_rows = [](Real*(&a)[kN], Real*(&b)[kN]) {
+      for (int n = 0; n < kN; ++n) std::swap(a[n], b[n]);
+    };
+    Real *zero[kN], *balance[kN], *through_x[kN], *low_y[kN], *high_y[kN], *low_z[kN], *high_z[kN];
+    for (int slot : {0, 1, 2, 3, 4}) {  // all zero: what directions of a single cell carry
+      rows(slot, zero);
+      for (Real* row : zero) std::fill_n(row, ld, Real(0));
+    }
     rows(0, balance);
-    rows(1, fresh);
-    rows(2, below_y);
-    rows(3, through_x);
-    if (in_z)
-      for (int j = 0; j < ny; ++j) {
-        rows(4 + j, below_z);
-        face.template flux<2>(j, k0, 0, nx, below_z);
-      }
+    rows(1, through_x);
+    rows(2, low_y);
+    rows(3, high_y);
+    rows(4, zero);
+    int low = 5, high = 5 + ny;  // slots of the fluxes through the lower and the upper faces of the plane
+    for (int j = 0; in_z && j < ny; ++j) {
+      rows(low + j, low_z);
+      face.template flux<2>(j, k0, 0, nx, low_z);
+    }
     for (int k = k0; k < k1; ++k) {
-      if (in_y) face.template flux<1>(0, k, 0, nx, below_y);
+      if (in_y) face.template flux<1>(0, k, 0, nx, low_y);
       for (int j = 0; j < ny; ++j) {
-        if (in_x) {
-          face.template flux<0>(j, k, 0, nx + 1, through_x);
-          for (int n = 0; n < kN; ++n)
-            for_each_lane(0, nx, [b = balance[n], f = through_x[n]](int i) { b[i] = f[i + 1] - f[i]; });
-        } else {
-          for (int n = 0; n < kN; ++n) std::fill_n(balance[n], nx, Real(0));
-        }
-        const auto add = [&](Real*(&below)[kN]) {
-          for (int n = 0; n < kN; ++n)
-            for_each_lane(0, nx, [b = balance[n], up = fresh[n], low = below[n]](int i) {
-              b[i] += up[i] - low[i];
-              low[i] = up[i];
-            });
-        };
-        if (in_y) {
-          face.template flux<1>(j + 1, k, 0, nx, fresh);
-          add(below_y);
-        }
-        if (in_z) {
-          rows(4 + j, below_z);
-          face.template flux<2>(j, k + 1, 0, nx, fresh);
-          add(below_z);
-        }
+        if (in_x) face.template flux<0>(j, k, 0, nx + 1, through_x);
+        if (in_y) face.template flux<1>(j + 1, k, 0, nx, high_y);
+        rows(in_z ? low + j : 4, low_z);
+        rows(in_z ? high + j : 4, high_z);
+        if (in_z) face.template flux<2>(j, k + 1, 0, nx, high_z);
+        for (int n = 0; n < kN; ++n)
+          for_each_lane(0, nx, [b = balance[n], x = through_x[n], y0 = low_y[n], y1 = high_y[n],
+                                z0 = low_z[n], z1 = high_z[n]](int i) {
+            b[i] = x[i + 1] - x[i] + (y1[i] - y0[i]) + (z1[i] - z0[i]);
+          });
         update(j, k, balance);
+        swap_rows(low_y, high_y);
       }
+      std::swap(low, high);
     }
   });
 }

@@ -158,10 +158,12 @@ double Incompressible::stable_dt(double courant) {
       });
   explicit_dt_ = 1.0 / std::max(1e-30, double(both));
   largest_viscosity_ = setup_.viscosity + double(eddy);
-  return courant / std::max(1e-30, double(convection));
+  convection_ = double(convection);
+  return courant / std::max(1e-30, convection_);
 }
 
 double Incompressible::courant(double dt) const {
+  if (convection_ >= 0.0) return dt * convection_;
   const Rates r = {views(u_),
                    {},
                    grid_.metrics(0),
@@ -282,6 +284,7 @@ void Incompressible::correct(const SolidMask& solids, Real dt) {
 
 void Incompressible::advance(double time, double dt, SolidMask& solids) {
   const Real h = static_cast<Real>(dt);
+  convection_ = -1.0;
   solids.resize_scratch();
   for (const SolidCell& c : solids.cells) solid_(c.i, c.j, c.k) = c.weight;
   std::fill(solids.impulse.begin(), solids.impulse.end(), std::array<double, 3>{0, 0, 0});

@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "base/simd.hpp"
-#include "flow/poisson/small_gemm.hpp"
 
 namespace ejecta {
 
@@ -11,97 +10,108 @@ IncrementSmoother::IncrementSmoother(const Grid& grid)
     : nx_(grid.nx()),
       ny_(grid.ny()),
       nz_(grid.nz()),
-      active_{grid.active(0), grid.active(1), grid.active(2)},
-      inverse_x_(nx_, nx_, 1),
-      inverse_y_(ny_, ny_, 1) {
-  for (int d = 0; d < 3; ++d)
+      active_{grid.active(0), grid.active(1), grid.active(2)} {
+  for (int d = 0; d < 3; ++d) {
     operator_[static_cast<std::size_t>(d)] =
         operator_1d(grid, d, PoissonBoundary::neumann, PoissonBoundary::neumann);
-  const std::size_t longest = static_cast<std::size_t>(std::max({nx_, ny_, nz_}));
-  for (auto* v : {&lower_, &upper_, &diagonal_, &solution_}) v->resize(longest);
-  for (auto* v : {&below_, &above_, &pivot_}) v->resize(static_cast<std::size_t>(nz_));
+    Factors& f = factors_[static_cast<std::size_t>(d)];
+    for (auto* v : {&f.inverse, &f.below, &f.above}) v->resize(static_cast<std::size_t>(grid.n(d)));
+  }
 }
 
 void IncrementSmoother::prepare(double nu_dt) {
-  for (int d = 0; d < 3; ++d)
-    if (active_[static_cast<std::size_t>(d)]) invert(d, nu_dt);
+  for (std::size_t d = 0; d < 3; ++d) {
+    const Operator1D& op = operator_[d];
+    Factors& f = factors_[d];
+    double above = 0.0;  // upper coefficient of the row before over its pivot
+    for (std::size_t i = 0; i < op.volume.size(); ++i) {
+      const double low = nu_dt * op.coupling[i] / op.volume[i], up = nu_dt * op.coupling[i + 1] / op.volume[i];
+      const double inverse = 1.0 / (1.0 + low + up + low * above);
+      above = -up * inverse;
+      f.inverse[i] = static_cast<Real>(inverse);
+      f.below[i] = static_cast<Real>(-low * inverse);
+      f.above[i] = static_cast<Real>(above);
+    }
+  }
 }
 
-/// Thomas factors of 1 - nu dt D along one axis; along x and y also the dense inverse, column by column.
-void IncrementSmoother::invert(int d, double nu_dt) {
-  const Operator1D& op = operator_[static_cast<std::size_t>(d)];
-  const int n = static_cast<int>(op.volume.size());
-  for (int i = 0; i < n; ++i) {
-    const std::size_t at = static_cast<std::size_t>(i);
-    const double low = nu_dt * op.coupling[at] / op.volume[at],
-                 up = nu_dt * op.coupling[at + 1] / op.volume[at];
-    lower_[at] = -low;
-    upper_[at] = -up;
-    // 1 / pivot of the forward elimination
-    diagonal_[at] = 1.0 / (1.0 + low + up - (i > 0 ? lower_[at] * upper_[at - 1] * diagonal_[at - 1] : 0.0));
-  }
-  if (d == 2) {
-    for (std::size_t k = 0; k < static_cast<std::size_t>(n); ++k) {
-      below_[k] = static_cast<Real>(lower_[k]);
-      above_[k] = static_cast<Real>(upper_[k] * diagonal_[k]);
-      pivot_[k] = static_cast<Real>(diagonal_[k]);
+/// Along x the recurrence runs over the registers of kLanes rows at once, transposed there and back.
+void IncrementSmoother::smooth_x(FieldView delta, int k) const {
+  const int width = (nx_ + kLanes - 1) / kLanes * kLanes;
+  Lanes* column = reinterpret_cast<Lanes*>(thread_scratch(static_cast<std::size_t>(width * kLanes)));
+  const Factors& f = factors_[0];
+  for (int j0 = 0; j0 < ny_; j0 += kLanes) {
+    const int last = std::min(kLanes, ny_ - j0) - 1;
+    Lanes tile[kLanes];
+    for (int i0 = 0; i0 < width; i0 += kLanes) {
+      for (int j = 0; j < kLanes; ++j)
+        tile[j] = *reinterpret_cast<const Lanes*>(delta.row(j0 + std::min(j, last), k) + i0);
+      transpose(tile);
+      std::copy_n(tile, kLanes, column + i0);
     }
-    return;
-  }
-  for (int column = 0; column < n; ++column) {
-    for (int i = 0; i < n; ++i) {
+    Lanes s = column[0] * f.inverse[0];
+    column[0] = s;
+    for (int i = 1; i < nx_; ++i) {
       const std::size_t at = static_cast<std::size_t>(i);
-      const double right = i == column ? 1.0 : 0.0;
-      solution_[at] = (right - (i > 0 ? lower_[at] * solution_[at - 1] : 0.0)) * diagonal_[at];
+      s = column[i] * f.inverse[at] - f.below[at] * s;
+      column[i] = s;
     }
-    for (int i = n - 2; i >= 0; --i) {
-      const std::size_t at = static_cast<std::size_t>(i);
-      solution_[at] -= upper_[at] * diagonal_[at] * solution_[at + 1];
+    for (int i = nx_ - 2; i >= 0; --i) {
+      s = column[i] - f.above[static_cast<std::size_t>(i)] * s;
+      column[i] = s;
     }
-    for (int i = 0; i < n; ++i) {
-      const Real value = static_cast<Real>(solution_[static_cast<std::size_t>(i)]);
-      if (d == 0) inverse_x_(i, column, 0) = value;  // rows are multiplied from the right
-      else inverse_y_(column, i, 0) = value;
+    for (int i0 = 0; i0 < width; i0 += kLanes) {
+      std::copy_n(column + i0, kLanes, tile);
+      transpose(tile);
+      for (int j = 0; j <= last; ++j) *reinterpret_cast<Lanes*>(delta.row(j0 + j, k) + i0) = tile[j];
     }
+  }
+}
+
+void IncrementSmoother::smooth_y(FieldView delta, int k) const {
+  const Factors& f = factors_[1];
+  for (int j = 0; j < ny_; ++j) {
+    const std::size_t at = static_cast<std::size_t>(j);
+    const Real inverse = f.inverse[at], below = f.below[at];  // below is 0 in the first row
+    for_each_lane(0, nx_, [=, row = delta.row(j, k), before = delta.row(std::max(j - 1, 0), k)](int i) {
+      row[i] = row[i] * inverse - below * before[i];
+    });
+  }
+  for (int j = ny_ - 2; j >= 0; --j)
+    for_each_lane(0, nx_, [above = f.above[static_cast<std::size_t>(j)], row = delta.row(j, k),
+                           after = delta.row(j + 1, k)](int i) { row[i] -= above * after[i]; });
+}
+
+void IncrementSmoother::smooth_z_and_add(FieldView delta, int j, const Base& base) const {
+  const Factors& f = factors_[2];
+  for (int k = 0; active_[2] && k < nz_; ++k) {
+    const std::size_t at = static_cast<std::size_t>(k);
+    const Real inverse = f.inverse[at], below = f.below[at];
+    for_each_lane(0, nx_, [=, row = delta.row(j, k), before = delta.row(j, std::max(k - 1, 0))](int i) {
+      row[i] = row[i] * inverse - below * before[i];
+    });
+  }
+  // Backward; a row is added to its base as soon as the row below no longer needs it.
+  for (int k = nz_ - 1; k >= 0; --k) {
+    Real* row = delta.row(j, k);
+    const Real *one = base.one.row(j, k), *two = base.two.row(j, k);
+    const Real a = base.a, b = base.b, least = base.least;
+    if (k > 0 && active_[2])
+      for_each_lane(0, nx_, [row, above = f.above[static_cast<std::size_t>(k - 1)],
+                             below = delta.row(j, k - 1)](int i) { below[i] -= above * row[i]; });
+    for_each_lane(0, nx_, [=](int i) {
+      const Real sum = row[i] + a * one[i] + b * two[i];
+      row[i] = sum < least ? least : sum;  // NaN stays
+    });
   }
 }
 
 void IncrementSmoother::apply(FieldView delta, const Base& base) const {
-  const int ld = (nx_ + kLanes - 1) / kLanes * kLanes;
-  const ConstFieldView x = inverse_x_.view(), y = inverse_y_.view();
   for_each_index(nz_, [&](int k) {
-    Real* scratch = thread_scratch(static_cast<std::size_t>(ld) * static_cast<std::size_t>(ny_));
-    Real* plane = delta.row(0, k);
-    const int ldp = static_cast<int>(delta.sy);
-    if (active_[1]) small_gemm(ny_, ld, ny_, y.origin, static_cast<int>(y.sy), plane, ldp, scratch, ld);
-    else std::copy_n(plane, nx_, scratch);
-    if (active_[0]) small_gemm(ny_, ld, nx_, scratch, ld, x.origin, static_cast<int>(x.sy), plane, ldp);
-    else
-      for (int j = 0; j < ny_; ++j) plane[j * ldp] = scratch[j * ld];
+    if (active_[1]) smooth_y(delta, k);
+    if (active_[0]) smooth_x(delta, k);
   });
-  for_each_index(ny_, [&](int j) {
-    for (int k = 0; active_[2] && k < nz_; ++k) {
-      const std::size_t at = static_cast<std::size_t>(k);
-      Real* row = delta.row(j, k);
-      const Real* before = delta.row(j, k - 1);
-      const Real pivot = pivot_[at], below = k > 0 ? below_[at] : Real(0);
-      for_each_lane(0, nx_, [=](int i) { row[i] = (row[i] - below * before[i]) * pivot; });
-    }
-    // Backward; a row is added to its base as soon as the row below no longer needs it.
-    for (int k = nz_ - 1; k >= 0; --k) {
-      Real* row = delta.row(j, k);
-      Real* below = k > 0 ? delta.row(j, k - 1) : nullptr;
-      const Real above = active_[2] && k > 0 ? above_[static_cast<std::size_t>(k) - 1] : Real(0);
-      const Real *one = base.one.row(j, k), *two = base.two.row(j, k);
-      const Real a = base.a, b = base.b;
-      if (below)
-        for_each_lane(0, nx_, [=](int i) {
-          below[i] -= above * row[i];
-          row[i] += a * one[i] + b * two[i];
-        });
-      else for_each_lane(0, nx_, [=](int i) { row[i] += a * one[i] + b * two[i]; });
-    }
-  });
+  for_each_index(ny_, [&](int j) { smooth_z_and_add(delta, j, base); });
 }
 
 }  // namespace ejecta

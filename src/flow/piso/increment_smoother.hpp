@@ -1,5 +1,6 @@
 #pragma once
 #include <array>
+#include <limits>
 #include <vector>
 
 #include "flow/poisson/operator_1d.hpp"
@@ -21,25 +22,31 @@ class IncrementSmoother {
   explicit IncrementSmoother(const Grid& grid);
   /// nu dt, m2. Allocates nothing.
   void prepare(double nu_dt);
-  /// What the smoothed increment is added to: a one + b two.
+  /// What the smoothed increment is added to, a one + b two, and the smallest value of the sum.
   struct Base {
     ConstFieldView one;
     Real a;
     ConstFieldView two;
     Real b;
+    Real least = std::numeric_limits<Real>::lowest();
   };
   /// delta becomes base + smoothed delta.
   void apply(FieldView delta, const Base& base) const;
 
  private:
-  void invert(int d, double nu_dt);
+  /// LU factors of 1 - nu dt D along one axis: forward s_i = inverse_i r_i - below_i s_i-1, backward
+  /// s_i -= above_i s_i+1.
+  struct Factors {
+    std::vector<Real> inverse, below, above;
+  };
+  void smooth_x(FieldView delta, int k) const;
+  void smooth_y(FieldView delta, int k) const;
+  void smooth_z_and_add(FieldView delta, int j, const Base& base) const;
 
   int nx_, ny_, nz_;
   std::array<bool, 3> active_;
   std::array<Operator1D, 3> operator_;
-  Field inverse_x_, inverse_y_;              // dense inverses, row-major (x: transposed, for rows)
-  std::vector<Real> below_, above_, pivot_;  // of the tridiagonal system along z
-  std::vector<double> lower_, upper_, diagonal_, solution_;
+  std::array<Factors, 3> factors_;
 };
 
 }  // namespace ejecta

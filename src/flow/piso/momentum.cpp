@@ -68,56 +68,57 @@ void predict(const Grid& grid, const MomentumTerms& t) {
                                       {grid.metrics(0), grid.metrics(1), grid.metrics(2)},
                                       t.viscosity};
   const Metrics m[3] = {grid.metrics(0), grid.metrics(1), grid.metrics(2)};
-  const bool hoop = grid.axisymmetric();
-  sweep<3>(grid, face, [&](int j, int k, Real* const(&balance)[3]) {
-    for (int c = 0; c < 3; ++c) {
-      const Real *old = t.old[c].row(j, k), *now = t.u[c].row(j, k), *p = t.pressure.row(j, k);
-      const Real* source = t.source[c].origin ? t.source[c].row(j, k) : nullptr;
-      const Real* b = balance[c];
-      Real* out = t.out[c].row(j, k);
-      const Real dt = t.dt, wb = t.b, base_a = t.increment_only ? Real(0) : t.a,
-                 base_b = t.increment_only ? Real(0) : t.b, acceleration = t.acceleration[c];
-      const Real inv_jk = m[1].inv_volume[j] * m[2].inv_volume[k];
-      const std::ptrdiff_t s = stride(t.pressure, c);
-      const bool active = grid.active(c);
-      const Metrics& mc = m[c];
-      const Real* inv_volume = m[0].inv_volume;
-      const int nx = grid.nx();
-      const auto finish = [=](auto with_source, auto with_pressure) {
-        for_each_lane(0, nx, [=](int i) {
-          const int at = c == 0 ? i : c == 1 ? j : k;
-          Real rate = acceleration - b[i] * inv_volume[i] * inv_jk;
-          if constexpr (with_pressure) rate -= cell_gradient(p + i, s, mc, at);
-          if constexpr (with_source) rate += source[i];
-          out[i] = base_a * old[i] + base_b * now[i] + wb * dt * rate;
-        });
-      };
-      using Yes = std::true_type;
-      using No = std::false_type;
-      if (source) active ? finish(Yes{}, Yes{}) : finish(Yes{}, No{});
-      else active ? finish(No{}, Yes{}) : finish(No{}, No{});
-      if (hoop && c == 0) {
-        // - tau_theta_theta / r, tau = 2 nu u_r / r (nu u_r / r without the transposed gradient), implicit:
-        // next to the axis it is stiffer than any other term.
-        const Real* eddy = kTurbulent ? t.eddy_viscosity.row(j, k) : nullptr;
-        const Real* r = m[0].centre;
-        const Real nu = t.viscosity;
-        for_each_lane(0, grid.nx(), [=](int i) {
-          const Real rate = wb * dt * (kTurbulent ? Real(2) * (nu + eddy[i]) : nu) / (r[i] * r[i]);
-          const Real base = base_a * old[i] + base_b * now[i];
-          out[i] = base + (out[i] - base - rate * now[i]) / (Real(1) + rate);
-        });
-      }
+  const auto component = [&](auto which, int j, int k, const Real* balance) {
+    constexpr int C = decltype(which)::value;
+    const Real *old = t.old[C].row(j, k), *now = t.u[C].row(j, k), *p = t.pressure.row(j, k);
+    const Real* source = t.source[C].origin ? t.source[C].row(j, k) : nullptr;
+    Real* out = t.out[C].row(j, k);
+    const Real dt = t.dt, wb = t.b, base_a = t.increment_only ? Real(0) : t.a,
+               base_b = t.increment_only ? Real(0) : t.b, acceleration = t.acceleration[C];
+    const Real inv_jk = m[1].inv_volume[j] * m[2].inv_volume[k];
+    const std::ptrdiff_t s = stride(t.pressure, C);
+    const Metrics mc = m[C];
+    const Real* inv_volume = m[0].inv_volume;
+    const int nx = grid.nx();
+    const auto finish = [=](auto with_source, auto with_pressure) {
+      for_each_lane(0, nx, [=](int i) {
+        const int at = C == 0 ? i : C == 1 ? j : k;
+        Real rate = acceleration - balance[i] * inv_volume[i] * inv_jk;
+        if constexpr (with_pressure) rate -= cell_gradient(p + i, s, mc, at);
+        if constexpr (with_source) rate += source[i];
+        out[i] = base_a * old[i] + base_b * now[i] + wb * dt * rate;
+      });
+    };
+    using Yes = std::true_type;
+    using No = std::false_type;
+    if (source) grid.active(C) ? finish(Yes{}, Yes{}) : finish(Yes{}, No{});
+    else grid.active(C) ? finish(No{}, Yes{}) : finish(No{}, No{});
+    if (C == 0 && grid.axisymmetric()) {
+      // - tau_theta_theta / r, tau = 2 nu u_r / r (nu u_r / r without the transposed gradient), implicit:
+      // next to the axis it is stiffer than any other term.
+      const Real* eddy = kTurbulent ? t.eddy_viscosity.row(j, k) : nullptr;
+      const Real* r = m[0].centre;
+      const Real nu = t.viscosity;
+      for_each_lane(0, grid.nx(), [=](int i) {
+        const Real rate = wb * dt * (kTurbulent ? Real(2) * (nu + eddy[i]) : nu) / (r[i] * r[i]);
+        const Real base = base_a * old[i] + base_b * now[i];
+        out[i] = base + (out[i] - base - rate * now[i]) / (Real(1) + rate);
+      });
     }
+  };
+  sweep<3>(grid, face, [&](int j, int k, Real* const(&balance)[3]) {
+    component(std::integral_constant<int, 0>{}, j, k, balance[0]);
+    component(std::integral_constant<int, 1>{}, j, k, balance[1]);
+    component(std::integral_constant<int, 2>{}, j, k, balance[2]);
   });
 }
 
 /// Adds what one row of lower D-faces carries; sign +1 where they are the lower boundary of the box.
 template <int D, class Face>
 void book_row(const Face& face, int j, int k, int i0, int i1, double sign, BoundaryFlow& sum) {
-  const int count = i1;
-  Real* buffer = thread_scratch(static_cast<std::size_t>(3 * (count + 1)), 2);
-  Real* rows[3] = {buffer, buffer + count + 1, buffer + 2 * (count + 1)};
+  const int ld = i1 + kLanes;
+  Real* buffer = thread_scratch(static_cast<std::size_t>(3 * ld), 2);
+  Real* rows[3] = {buffer, buffer + ld, buffer + 2 * ld};
   face.template flux<D>(j, k, i0, i1, rows);
   const Real* q = face.q[D].row(j, k);
   for (int i = i0; i < i1; ++i) {

@@ -7,19 +7,37 @@
 namespace ejecta {
 namespace {
 
+/// Face velocities along D of row (., j, k), the last face of a row in x included.
 template <int D>
-void faces_along(const Grid& grid, ConstFieldView u, ConstFieldView p, Real dt, FieldView q) {
-  const Metrics m = grid.metrics(D);
+void faces_along(const Grid& grid, const Metrics& m, ConstFieldView u, ConstFieldView p, Real dt, FieldView q,
+                 int j, int k) {
   const std::ptrdiff_t s = stride(p, D);
-  Range3 range = grid.range();
-  (D == 0 ? range.i1 : D == 1 ? range.j1 : range.k1) += 1;
-  for_each_cell(range, [=](int i, int j, int k) {
+  const Real *p_row = p.row(j, k), *u_row = u.row(j, k);
+  Real* q_row = q.row(j, k);
+  for_each_lane(0, grid.nx() + (D == 0), [=](int i) {
     const int at = D == 0 ? i : D == 1 ? j : k;
-    const Real *pc = p.row(j, k) + i, *uc = u.row(j, k) + i;
+    const Real *pc = p_row + i, *uc = u_row + i;
     const Real w = m.weight[at];
     const Real velocity = w * uc[-s] + (Real(1) - w) * uc[0];
     const Real smooth = w * cell_gradient(pc - s, s, m, at - 1) + (Real(1) - w) * cell_gradient(pc, s, m, at);
-    q(i, j, k) = velocity + dt * (smooth - (pc[0] - pc[-s]) * m.inv_distance[at]);
+    q_row[i] = velocity + dt * (smooth - (pc[0] - pc[-s]) * m.inv_distance[at]);
+  });
+}
+
+/// q -= dt grad phi on the lower D-faces of row (., j, k), and u -= dt grad phi in its cells where `cells`.
+template <int D>
+void correct_along(const Grid& grid, const Metrics& m, ConstFieldView phi, Real dt, FieldView q, FieldView u,
+                   int j, int k, bool cells) {
+  const std::ptrdiff_t s = stride(phi, D);
+  const Real* phi_row = phi.row(j, k);
+  Real *q_row = q.row(j, k), *u_row = u.row(j, k);
+  for_each_lane(0, grid.nx() + (D == 0), [=](int i) {
+    const int at = D == 0 ? i : D == 1 ? j : k;
+    q_row[i] -= dt * (phi_row[i] - phi_row[i - s]) * m.inv_distance[at];
+  });
+  if (!cells) return;
+  for_each_lane(0, grid.nx(), [=](int i) {
+    u_row[i] -= dt * cell_gradient(phi_row + i, s, m, D == 0 ? i : D == 1 ? j : k);
   });
 }
 
@@ -42,9 +60,15 @@ Outflow outflow(const Grid& grid, const std::array<ConstFieldView, 3>& q) {
 
 void face_velocities(const Grid& grid, const std::array<ConstFieldView, 3>& u_star, ConstFieldView p, Real dt,
                      const std::array<FieldView, 3>& q) {
-  if (grid.active(0)) faces_along<0>(grid, u_star[0], p, dt, q[0]);
-  if (grid.active(1)) faces_along<1>(grid, u_star[1], p, dt, q[1]);
-  if (grid.active(2)) faces_along<2>(grid, u_star[2], p, dt, q[2]);
+  const Metrics m[3] = {grid.metrics(0), grid.metrics(1), grid.metrics(2)};
+  for_each_index(grid.nz() + 1, [&](int k) {
+    for (int j = 0; j <= grid.ny(); ++j) {
+      if (grid.active(0) && j < grid.ny() && k < grid.nz())
+        faces_along<0>(grid, m[0], u_star[0], p, dt, q[0], j, k);
+      if (grid.active(1) && k < grid.nz()) faces_along<1>(grid, m[1], u_star[1], p, dt, q[1], j, k);
+      if (grid.active(2) && j < grid.ny()) faces_along<2>(grid, m[2], u_star[2], p, dt, q[2], j, k);
+    }
+  });
 }
 
 void divergence(const Grid& grid, const std::array<ConstFieldView, 3>& q, Real dt, FieldView rhs) {
@@ -56,32 +80,16 @@ void divergence(const Grid& grid, const std::array<ConstFieldView, 3>& q, Real d
 void apply_correction(const Grid& grid, ConstFieldView phi, Real dt, const std::array<FieldView, 3>& q,
                       const std::array<FieldView, 3>& u, FieldView p) {
   const Metrics m[3] = {grid.metrics(0), grid.metrics(1), grid.metrics(2)};
-  const auto along = [&](auto direction) {
-    constexpr int D = decltype(direction)::value;
-    if (!grid.active(D)) return;
-    const std::ptrdiff_t s = stride(phi, D);
-    const Metrics md = m[D];
-    const FieldView qd = q[D], ud = u[D];
-    for_each_cell(grid.range(), [=](int i, int j, int k) {
-      const int at = D == 0 ? i : D == 1 ? j : k;
-      const Real* pc = phi.row(j, k) + i;
-      qd(i, j, k) -= dt * (pc[0] - pc[-s]) * md.inv_distance[at];
-      ud(i, j, k) -= dt * cell_gradient(pc, s, md, at);
-    });
-    Range3 upper = grid.range();  // the faces behind the last cells
-    if (D == 0) upper.i0 = grid.nx(), upper.i1 = grid.nx() + 1;
-    if (D == 1) upper.j0 = grid.ny(), upper.j1 = grid.ny() + 1;
-    if (D == 2) upper.k0 = grid.nz(), upper.k1 = grid.nz() + 1;
-    for_each_cell(upper, [=](int i, int j, int k) {
-      const int at = D == 0 ? i : D == 1 ? j : k;
-      const Real* pc = phi.row(j, k) + i;
-      qd(i, j, k) -= dt * (pc[0] - pc[-s]) * md.inv_distance[at];
-    });
-  };
-  along(std::integral_constant<int, 0>{});
-  along(std::integral_constant<int, 1>{});
-  along(std::integral_constant<int, 2>{});
-  for_each_cell(grid.range(), [=](int i, int j, int k) { p(i, j, k) += phi(i, j, k); });
+  for_each_index(grid.nz() + 1, [&](int k) {
+    for (int j = 0; j <= grid.ny(); ++j) {
+      const bool cells = j < grid.ny() && k < grid.nz();
+      if (grid.active(0) && cells) correct_along<0>(grid, m[0], phi, dt, q[0], u[0], j, k, true);
+      if (grid.active(1) && k < grid.nz()) correct_along<1>(grid, m[1], phi, dt, q[1], u[1], j, k, cells);
+      if (grid.active(2) && j < grid.ny()) correct_along<2>(grid, m[2], phi, dt, q[2], u[2], j, k, cells);
+      if (!cells) continue;
+      for_each_lane(0, grid.nx(), [to = p.row(j, k), from = phi.row(j, k)](int i) { to[i] += from[i]; });
+    }
+  });
 }
 
 double largest_divergence(const Grid& grid, const std::array<ConstFieldView, 3>& q) {

@@ -15,7 +15,7 @@ struct GradientRow {
   std::ptrdiff_t sy, sz;
   Real span_y, span_z;
 
-  VelocityGradient operator()(int i) const {
+  EJECTA_KERNEL VelocityGradient operator()(int i) const {
     const Real sx = span_x[i];
     VelocityGradient v{
         derivative(x + i, 1, sx), derivative(x + i, sy, span_y), derivative(x + i, sz, span_z),
@@ -44,7 +44,7 @@ struct ProductRow {
   std::ptrdiff_t sy, sz;
   Real span_y, span_z;
 
-  Real operator()(int i) const {
+  EJECTA_KERNEL Real operator()(int i) const {
     const Real sx = span_x[i];
     return derivative(a + i, 1, sx) * derivative(b + i, 1, sx) +
            derivative(a + i, sy, span_y) * derivative(b + i, sy, span_y) +
@@ -103,7 +103,7 @@ struct ScalarFlux {
 /// Where a transport step writes.
 struct ScalarOut {
   FieldView k, second, nut, f1;
-  bool unfinished;  ///< k and second will still be smoothed: nu_t is taken from what they are now
+  bool unfinished;  ///< k and second are increments still to be smoothed: nu_t is taken from what they are now
 };
 
 template <bool kSst, bool kRound>
@@ -124,8 +124,7 @@ void transport(const Grid& grid, const ScalarFlux<kSst>& face, const std::array<
     const GradientRow gradient = gradient_row(grid, u, j, k);
     const ProductRow product = product_row(grid, face.value[0], face.value[1], j, k);
     const int nx = grid.nx();
-    const bool unfinished = out.unfinished;
-    const auto update = [=](auto axisymmetric) {
+    const auto update = [=](auto axisymmetric, auto unfinished) {
       GradientRow row = gradient;
       if constexpr (!axisymmetric) row.radius = nullptr;
       for_each_lane(0, nx, [=](int i) {
@@ -159,8 +158,8 @@ void transport(const Grid& grid, const ScalarFlux<kSst>& face, const std::array<
         }
         k1 = std::max(k1, kMinimalK);
         s1 = std::max(s1, kMinimalSecond);
-        out_k[i] = k1;
-        out_second[i] = s1;
+        out_k[i] = unfinished ? k1 - k0 : k1;
+        out_second[i] = unfinished ? s1 - s0 : s1;
         const Real rate_of_strain = std::sqrt(strain2), kn = unfinished ? k0 : k1, sn = unfinished ? s0 : s1;
         if constexpr (kSst) {
           using namespace k_omega_sst;
@@ -173,7 +172,10 @@ void transport(const Grid& grid, const ScalarFlux<kSst>& face, const std::array<
         }
       });
     };
-    grid.axisymmetric() ? update(std::true_type{}) : update(std::false_type{});
+    using Yes = std::true_type;  // decided outside the loop: it would not vectorise
+    using No = std::false_type;
+    if (grid.axisymmetric()) out.unfinished ? update(Yes{}, Yes{}) : update(Yes{}, No{});
+    else out.unfinished ? update(No{}, Yes{}) : update(No{}, No{});
   });
 }
 
@@ -220,14 +222,6 @@ void TwoEquation::measure_walls(const Boundaries& b) {
       }
     }
   }
-}
-
-/// now + smoothed (next - now), not below `least`.
-void TwoEquation::smooth(const IncrementSmoother& smoother, ConstFieldView now, FieldView next,
-                         Real least) const {
-  for_each_cell(grid_.range(), [=](int i, int j, int k) { next(i, j, k) -= now(i, j, k); });
-  smoother.apply(next, {now, Real(1), now, Real(0)});
-  for_each_cell(grid_.range(), [=](int i, int j, int k) { next(i, j, k) = std::max(next(i, j, k), least); });
 }
 
 /// Equilibrium values in the cells next to walls and the wall's eddy viscosity in the ghosts (Launder &
@@ -284,8 +278,8 @@ void TwoEquation::advance(const Boundaries& b, const std::array<ConstFieldView, 
   else if (round_jet_) run(std::false_type{}, std::true_type{});
   else run(std::false_type{}, std::false_type{});
   if (smoother) {
-    smooth(*smoother, k_.view(), k_new_.view(), kMinimalK);
-    smooth(*smoother, second_.view(), second_new_.view(), kMinimalSecond);
+    smoother->apply(k_new_.view(), {k_.view(), Real(1), k_.view(), Real(0), kMinimalK});
+    smoother->apply(second_new_.view(), {second_.view(), Real(1), second_.view(), Real(0), kMinimalSecond});
   }
   std::swap(k_, k_new_);
   std::swap(second_, second_new_);

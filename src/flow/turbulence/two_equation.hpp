@@ -33,7 +33,6 @@ class TwoEquation {
 
  private:
   void apply_walls();
-  void smooth(const IncrementSmoother& smoother, ConstFieldView now, FieldView next, Real least) const;
   void measure_walls(const Boundaries& b);
 
   const Grid& grid_;
