@@ -23,14 +23,15 @@ struct Range3 {
 int thread_count();
 void set_thread_count(int threads);
 
-/// kernel(i) for i in [i0, i1) in SIMD on this thread, whole registers at a time: up to kLanes - 1 entries past
+/// kernel(i) for i in [i0, i1) in SIMD on this thread, whole registers at a time: up to kRealLanes - 1 entries past
 /// i1 are computed too. Rows of a Field, of Metrics and of scratch sized by whole registers have room for
 /// them; what lands there is padding or ghosts that are filled again before they are read.
 template <class Kernel>
 inline void for_each_lane(int i0, int i1, const Kernel& kernel) {
-  for (int i = i0; i < i1; i += kLanes) {
+  if (i1 == i0 + 1) return kernel(i0);  // a column of faces; one cell in x
+  for (int i = i0; i < i1; i += kRealLanes) {
 #pragma omp simd
-    for (int lane = 0; lane < kLanes; ++lane) kernel(i + lane);
+    for (int lane = 0; lane < kRealLanes; ++lane) kernel(i + lane);
   }
 }
 
@@ -39,7 +40,8 @@ template <class Kernel>
 void for_each_cell(const Range3& r, const Kernel& kernel) {
 #pragma omp parallel for schedule(static)
   for (int k = r.k0; k < r.k1; ++k)
-    for (int j = r.j0; j < r.j1; ++j) for_each_lane(r.i0, r.i1, [&](int i) { kernel(i, j, k); });
+    for (int j = r.j0; j < r.j1; ++j)
+      for_each_lane(r.i0, r.i1, [&](int i) __attribute__((always_inline)) { kernel(i, j, k); });
 }
 
 /// kernel(n) for n in [0, count), e.g. one plane, one row, one body at a time.
@@ -66,7 +68,7 @@ Real* thread_scratch(std::size_t count, int slot = 0);
 /// As for_each_index, for iterations of very different cost.
 template <class Kernel>
 void for_each_index_dynamic(int count, const Kernel& kernel) {
-#pragma omp parallel for schedule(dynamic, 16)
+#pragma omp parallel for schedule(dynamic, 2)
   for (int n = 0; n < count; ++n) kernel(n);
 }
 
@@ -96,55 +98,63 @@ double reduce_sum(const Range3& r, const Kernel& kernel) {
   return sum;
 }
 
-/// Largest kernel(i, j, k), at least `floor`. NaN propagates: a NaN anywhere gives NaN.
-template <class Kernel>
-Real reduce_max(const Range3& r, Real floor, const Kernel& kernel) {
-  Real result = floor;
-  bool nan = false;
-#pragma omp parallel for schedule(static) reduction(max : result) reduction(|| : nan)
-  for (int k = r.k0; k < r.k1; ++k)
-    for (int j = r.j0; j < r.j1; ++j) {
-      Real row = floor;
-      int bad = 0;
-#pragma omp simd reduction(max : row) reduction(| : bad)
-      for (int i = r.i0; i < r.i1; ++i) {
-        const Real v = kernel(i, j, k);
-        row = v > row ? v : row;
-        bad |= !(v == v);
-      }
-      result = row > result ? row : result;
-      nan = nan || bad;
+namespace detail {
+/// Running maxima of kN rates in SIMD lanes; remembers whether a NaN was seen.
+template <std::size_t kN>
+struct Maxima {
+  Real lane[kN][kRealLanes] = {};
+  int nan[kRealLanes] = {};
+
+  template <class Kernel>
+  EJECTA_KERNEL void add(int n, int i, int j, int k, const Kernel& kernel) {
+    Real v[kN];
+    kernel(i, j, k, v);
+    for (std::size_t c = 0; c < kN; ++c) {
+      lane[c][n] = v[c] > lane[c][n] ? v[c] : lane[c][n];
+      nan[n] |= !(v[c] == v[c]);
     }
-  return nan ? std::numeric_limits<Real>::quiet_NaN() : result;
+  }
+
+  /// One row; where registers do not divide it the last one overlaps the one before.
+  template <class Kernel>
+  void add_row(int i0, int i1, int j, int k, const Kernel& kernel) {
+    for (int i = i0; i1 - i0 < kRealLanes && i < i1; ++i) add(0, i, j, k, kernel);
+    for (int i = i0; i1 - i0 >= kRealLanes && i < i1; i += kRealLanes) {
+      const int start = i + kRealLanes <= i1 ? i : i1 - kRealLanes;
+#pragma omp simd
+      for (int n = 0; n < kRealLanes; ++n) add(n, start + n, j, k, kernel);
+    }
+  }
+};
+}  // namespace detail
+
+/// The largest of each of the kN values that kernel(i, j, k, values) sets, at least 0, in one pass. A NaN
+/// anywhere is returned as NaN.
+template <std::size_t kN, class Kernel>
+std::array<Real, kN> reduce_max(const Range3& r, const Kernel& kernel) {
+  std::array<Real, kN> result{};
+  bool nan = false;
+#pragma omp parallel
+  {
+    detail::Maxima<kN> m;
+#pragma omp for schedule(static) nowait
+    for (int k = r.k0; k < r.k1; ++k)
+      for (int j = r.j0; j < r.j1; ++j) m.add_row(r.i0, r.i1, j, k, kernel);
+#pragma omp critical(ejecta_reduce_max)
+    for (int n = 0; n < kRealLanes; ++n) {
+      nan = nan || m.nan[n];
+      for (std::size_t c = 0; c < kN; ++c) result[c] = m.lane[c][n] > result[c] ? m.lane[c][n] : result[c];
+    }
+  }
+  if (nan) result.fill(std::numeric_limits<Real>::quiet_NaN());
+  return result;
 }
 
-/// The three largest of kernel(i, j, k, a, b, c), which sets a, b and c, in one pass; at least 0. A NaN
-/// anywhere is returned as NaN.
+/// The largest kernel(i, j, k), at least 0.
 template <class Kernel>
-std::array<Real, 3> reduce_max3(const Range3& r, const Kernel& kernel) {
-  Real a = 0, b = 0, c = 0;
-  bool nan = false;
-#pragma omp parallel for schedule(static) reduction(max : a, b, c) reduction(|| : nan)
-  for (int k = r.k0; k < r.k1; ++k)
-    for (int j = r.j0; j < r.j1; ++j) {
-      Real row_a = 0, row_b = 0, row_c = 0;
-      int bad = 0;
-#pragma omp simd reduction(max : row_a, row_b, row_c) reduction(| : bad)
-      for (int i = r.i0; i < r.i1; ++i) {
-        Real va, vb, vc;
-        kernel(i, j, k, va, vb, vc);
-        row_a = va > row_a ? va : row_a;
-        row_b = vb > row_b ? vb : row_b;
-        row_c = vc > row_c ? vc : row_c;
-        bad |= !(va == va) | !(vb == vb) | !(vc == vc);
-      }
-      a = row_a > a ? row_a : a;
-      b = row_b > b ? row_b : b;
-      c = row_c > c ? row_c : c;
-      nan = nan || bad;
-    }
-  if (nan) a = b = c = std::numeric_limits<Real>::quiet_NaN();
-  return {a, b, c};
+Real reduce_max(const Range3& r, const Kernel& kernel) {
+  return reduce_max<1>(r, [&](int i, int j, int k, Real* v)
+                           __attribute__((always_inline)) { v[0] = kernel(i, j, k); })[0];
 }
 
 }  // namespace ejecta

@@ -89,7 +89,7 @@ void Boundaries::fill_side(const std::array<FieldView, kN>& fields, const Side& 
   const int n = grid_.n(s.d);
   for_each_index(s.nb + 2 * s.ghosts_b, [&](int row) {
     const int b = std::clamp(row - s.ghosts_b, 0, s.nb - 1);
-    const std::ptrdiff_t start = s.first + (row - s.ghosts_b) * s.step_b;
+    const std::ptrdiff_t start = s.cell(0, row - s.ghosts_b);
     for (std::size_t c = 0; c < kN; ++c)
       for (int layer = 0; layer < kGhosts; ++layer) {
         Real* origin = fields[c].origin;
@@ -132,8 +132,8 @@ void Boundaries::fill_velocity(std::array<FieldView, 3> u, const std::array<Fiel
         break;
       case BoundaryKind::open:
         // Fluid that comes in through an open boundary brings no tangential momentum.
-        fill_side(u, s, false, [=](std::size_t c, int, int, int, std::ptrdiff_t cell, Real inner) {
-          const Real through = through_face[cell];
+        fill_side(u, s, false, [=](std::size_t c, int, int a, int b, std::ptrdiff_t, Real inner) {
+          const Real through = through_face[s.cell(a, b)];
           const bool enters = s.upper ? through < 0 : through > 0;
           return !enters ? inner : c == d ? Real(2) * through - inner : -inner;
         });
@@ -157,8 +157,8 @@ void Boundaries::fill_pressure(FieldView p, const std::array<FieldView, 3>& q, b
       const Real fixed = total ? static_cast<Real>(boundary.pressure) : Real(0);
       const Real dynamic = total && boundary.total_pressure ? Real(0.5) : Real(0);
       const Real* through_face = q[static_cast<std::size_t>(s.d)].origin + s.face;
-      fill_side<1>({p}, s, false, [=](std::size_t, int, int, int, std::ptrdiff_t cell, Real inner) {
-        const Real through = through_face[cell];
+      fill_side<1>({p}, s, false, [=](std::size_t, int, int a, int b, std::ptrdiff_t, Real inner) {
+        const Real through = through_face[s.cell(a, b)];
         const bool enters = s.upper ? through < 0 : through > 0;
         return Real(2) * (fixed - (enters ? dynamic * through * through : Real(0))) - inner;
       });
@@ -186,8 +186,8 @@ void Boundaries::fill_turbulence(FieldView k, FieldView second, const std::array
       continue;
     }
     const Real* through_face = q[static_cast<std::size_t>(s.d)].origin + s.face;
-    fill_side(both, s, false, [=, this](std::size_t c, int, int a, int b, std::ptrdiff_t cell, Real inner) {
-      const Real through = through_face[cell];
+    fill_side(both, s, false, [=, this](std::size_t c, int, int a, int b, std::ptrdiff_t, Real inner) {
+      const Real through = through_face[s.cell(a, b)];
       const BoundaryState& state = at(face, a, b);
       const bool enters = s.upper ? through < 0 : through > 0;
       return !enters || state.k <= 0 ? inner : c == 0 ? state.k : state.second;

@@ -75,6 +75,7 @@ class Boundaries {
     std::ptrdiff_t first, step_a, step_b, outward;  ///< of the boundary cell (0, 0), between cells
     std::ptrdiff_t face;                            ///< from a boundary cell to the face, in a face field
     bool upper;
+    std::ptrdiff_t cell(int a, int b) const { return first + a * step_a + b * step_b; }
   };
   Side side(const FieldView& f, int face) const;
   template <std::size_t kN, class Ghost>

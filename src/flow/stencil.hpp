@@ -1,11 +1,12 @@
 #pragma once
+#include "base/parallel.hpp"
 #include "grid/grid.hpp"
 
 /// What every finite-volume kernel of the flow is built from.
 namespace ejecta {
 
 /// van Leer (1974) harmonic mean of two one-sided gradients; zero at an extremum.
-inline Real limiter_van_leer(Real a, Real b) {
+EJECTA_KERNEL Real limiter_van_leer(Real a, Real b) {
   const Real product = a * b;
   return product > Real(0) ? Real(2) * product / (a + b) : Real(0);
 }
@@ -17,13 +18,13 @@ struct FaceMetrics {
   Real weight;                          ///< of the cell below in the value on the face
 };
 
-inline FaceMetrics face_metrics(const Metrics& m, int at) {
+EJECTA_KERNEL FaceMetrics face_metrics(const Metrics& m, int at) {
   return {m.inv_distance[at - 1],      m.inv_distance[at],      m.inv_distance[at + 1],
           Real(0.5) * m.width[at - 1], Real(0.5) * m.width[at], m.weight[at]};
 }
 
 /// Limited second-order upwind value on a face, from two cells below (a, b) and two above (c, d).
-inline Real upwind_value(Real velocity, Real a, Real b, Real c, Real d, const FaceMetrics& f) {
+EJECTA_KERNEL Real upwind_value(Real velocity, Real a, Real b, Real c, Real d, const FaceMetrics& f) {
   const bool up = velocity > Real(0);
   const Real upwind = up ? b : c;
   const Real behind = (upwind - (up ? a : d)) * (up ? f.inv_below : f.inv_above);
@@ -32,25 +33,25 @@ inline Real upwind_value(Real velocity, Real a, Real b, Real c, Real d, const Fa
 }
 
 template <class T>
-inline std::ptrdiff_t stride(const View<T>& v, int d) {
+EJECTA_KERNEL std::ptrdiff_t stride(const View<T>& v, int d) {
   return d == 0 ? 1 : d == 1 ? v.sy : v.sz;
 }
 
 /// Area of the lower D-face of cell (i, j, k), m2 (axisymmetric: per radian).
 template <int D>
-inline Real face_area(const Metrics (&m)[3], int i, int j, int k) {
+EJECTA_KERNEL Real face_area(const Metrics (&m)[3], int i, int j, int k) {
   if constexpr (D == 0) return m[0].area[i] * m[1].volume[j] * m[2].volume[k];
   if constexpr (D == 1) return m[0].volume[i] * m[2].volume[k];
   return m[0].volume[i] * m[1].volume[j];
 }
 
 /// Central derivative along D at a cell.
-inline Real derivative(const Real* at, std::ptrdiff_t step, Real inv_span) {
+EJECTA_KERNEL Real derivative(const Real* at, std::ptrdiff_t step, Real inv_span) {
   return (at[step] - at[-step]) * inv_span;
 }
 
 /// Gauss gradient along one direction: face values linear between centres.
-inline Real cell_gradient(const Real* p, std::ptrdiff_t s, const Metrics& m, int at) {
+EJECTA_KERNEL Real cell_gradient(const Real* p, std::ptrdiff_t s, const Metrics& m, int at) {
   const Real low = m.weight[at] * p[-s] + (Real(1) - m.weight[at]) * p[0];
   const Real high = m.weight[at + 1] * p[0] + (Real(1) - m.weight[at + 1]) * p[s];
   return (high - low) * m.inv_width[at];

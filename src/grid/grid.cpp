@@ -64,7 +64,7 @@ Grid::Lines Grid::make_lines(const Axis& a, bool radial, bool collapsed) {
   if (radial && a.face.front() < 1e-12 * a.length()) l.area[static_cast<std::size_t>(g)] = 0;
   for (auto* line : {&l.width, &l.centre, &l.face, &l.volume, &l.area, &l.inv_volume, &l.inv_width,
                      &l.inv_distance, &l.inv_span, &l.weight})
-    line->insert(line->end(), kLanes, line->back());  // kernels run over whole registers (for_each_lane)
+    line->insert(line->end(), kRealLanes, line->back());  // kernels run over whole registers (for_each_lane)
   return l;
 }
 

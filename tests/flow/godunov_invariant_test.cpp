@@ -122,7 +122,9 @@ TEST(GodunovInvariant, SameBitsForAnyNumberOfThreads) {
     auto t = blast(true, TurbulenceModel::k_epsilon);
     for (int n = 0; n < 20; ++n) t->solver.advance(t->solver.stable_dt(0.5));
     const Field& f = t->solver.primitive()[godunov::kRho];
-    density.emplace_back(f.data(), f.data() + f.size());
+    std::vector<Real>& cells = density.emplace_back();
+    for (int k = 0; k < f.nz(); ++k)
+      for (int j = 0; j < f.ny(); ++j) cells.insert(cells.end(), &f(0, j, k), &f(0, j, k) + f.nx());
   }
   set_thread_count(before);
   EXPECT_EQ(density[0], density[1]);

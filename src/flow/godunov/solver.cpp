@@ -89,7 +89,7 @@ GasState Solver::at(int i, int j, int k) const {
 double Solver::stable_dt(double courant) const {
   RateKernel kernel{view_block<const Real>(w_), eddy_viscosity_.view().origin, gas_, diffusion_, {}};
   for (int d = 0; d < 3; ++d) kernel.inv_width[static_cast<std::size_t>(d)] = geometry_.axis(d).inv_width;
-  const double rate = double(reduce_max(grid_.range(), Real(0), kernel));
+  const double rate = double(reduce_max(grid_.range(), kernel));
   if (std::isfinite(rate) && rate > 0.0) return courant / rate;
   for (int k = 0; k < grid_.nz(); ++k)
     for (int j = 0; j < grid_.ny(); ++j)

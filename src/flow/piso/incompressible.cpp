@@ -15,6 +15,9 @@
 namespace ejecta {
 namespace {
 
+/// What each of the two stages of Heun's method counts in a step.
+constexpr double kStageWeight = 0.5;
+
 std::array<PoissonBoundary, 6> poisson_boundaries(const std::array<Boundary, 6>& faces) {
   std::array<PoissonBoundary, 6> b;
   for (std::size_t f = 0; f < 6; ++f)
@@ -71,7 +74,7 @@ Incompressible::Incompressible(const Grid& grid, std::array<Boundary, 6> boundar
   if (setup.turbulence)
     turbulence_ =
         std::make_unique<TwoEquation>(grid, *setup.turbulence, setup.round_jet_correction, setup.viscosity);
-  boundary_sums_.resize(static_cast<std::size_t>(grid.ny() + grid.nz()));
+  boundary_sums_.reserve(static_cast<std::size_t>(2 * grid.ny() + grid.nz()));
   const Metrics m[3] = {grid.metrics(0), grid.metrics(1), grid.metrics(2)};
   box_volume_ = reduce_sum(grid.range(), [=](int i, int j, int k) {
     return double(m[0].volume[i]) * double(m[1].volume[j]) * double(m[2].volume[k]);
@@ -120,11 +123,11 @@ struct Rates {
   Metrics x, y, z;
   Real on_x, on_y, on_z, nu;
 
-  Real convection(int i, int j, int k) const {
+  EJECTA_KERNEL Real convection(int i, int j, int k) const {
     return on_x * std::abs(u[0](i, j, k)) * x.inv_width[i] + on_y * std::abs(u[1](i, j, k)) * y.inv_width[j] +
            on_z * std::abs(u[2](i, j, k)) * z.inv_width[k];
   }
-  Real viscosity(int i, int j, int k, Real eddy) const {
+  EJECTA_KERNEL Real viscosity(int i, int j, int k, Real eddy) const {
     const Real hx = x.inv_width[i], hy = y.inv_width[j], hz = z.inv_width[k];
     return Real(2) * (nu + eddy) * (on_x * hx * hx + on_y * hy * hy + on_z * hz * hz);
   }
@@ -146,15 +149,15 @@ double Incompressible::stable_dt(double courant) {
   // viscosity -4 nu sum dt/h2; k and epsilon, explicit Euler, stay positive under the same sum.
   const Real by_courant = static_cast<Real>(1.0 / courant);
   if (!turbulence_)
-    return 1.0 / std::max(1e-30, double(reduce_max(grid_.range(), Real(0), [=](int i, int j, int k) {
+    return 1.0 / std::max(1e-30, double(reduce_max(grid_.range(), [=](int i, int j, int k) {
                             return by_courant * r.convection(i, j, k) + r.viscosity(i, j, k, Real(0));
                           })));
   // With eddies: beyond the explicit limit increments are smoothed, up to the convective limit.
   const auto [both, eddy, convection] =
-      reduce_max3(grid_.range(), [=](int i, int j, int k, Real& sum, Real& nut, Real& rate) {
-        nut = r.nut(i, j, k);
-        rate = r.convection(i, j, k);
-        sum = by_courant * rate + r.viscosity(i, j, k, nut);
+      reduce_max<3>(grid_.range(), [=](int i, int j, int k, Real* rate) {
+        rate[1] = r.nut(i, j, k);
+        rate[2] = r.convection(i, j, k);
+        rate[0] = by_courant * rate[2] + r.viscosity(i, j, k, rate[1]);
       });
   explicit_dt_ = 1.0 / std::max(1e-30, double(both));
   largest_viscosity_ = setup_.viscosity + double(eddy);
@@ -173,8 +176,7 @@ double Incompressible::courant(double dt) const {
                    Real(grid_.active(1)),
                    Real(grid_.active(2)),
                    0};
-  return dt * double(reduce_max(grid_.range(), Real(0),
-                                [=](int i, int j, int k) { return r.convection(i, j, k); }));
+  return dt * double(reduce_max(grid_.range(), [=](int i, int j, int k) { return r.convection(i, j, k); }));
 }
 
 void Incompressible::evaluate_source(double time) {
@@ -187,7 +189,7 @@ void Incompressible::evaluate_source(double time) {
   });
 }
 
-void Incompressible::predict(double a, double b, double time, Real dt) {
+BoundaryFlow Incompressible::predict(double a, double b, double time, Real dt) {
   {
     ScopedTimer timer(times_.boundaries);
     boundaries_.fill_velocity(views(u_), views(q_));
@@ -209,9 +211,10 @@ void Incompressible::predict(double a, double b, double time, Real dt) {
   t.b = static_cast<Real>(b);
   t.dt = dt;
   t.increment_only = smoothing_;
-  predict_momentum(grid_, t);
-  if (!smoothing_) return;
-  for (int c = 0; c < 3; ++c) smoother_.apply(u_star_[c].view(), {t.old[c], t.a, t.u[c], t.b});
+  const BoundaryFlow through = predict_momentum(grid_, t, boundary_sums_);
+  for (int c = 0; smoothing_ && c < 3; ++c)
+    smoother_.apply(u_star_[c].view(), {t.old[c], t.a, t.u[c], t.b});
+  return through;
 }
 
 void Incompressible::force(SolidMask& solids, double weight) {
@@ -291,19 +294,17 @@ void Incompressible::advance(double time, double dt, SolidMask& solids) {
   smoothing_ = turbulence_ && dt > explicit_dt_;
   if (smoothing_) smoother_.prepare(0.5 * dt * largest_viscosity_);
 
-  predict(0.0, 1.0, time, h);
-  book_boundaries(0.5, dt);
-  force(solids, 0.5);
+  book_boundaries(predict(0.0, 1.0, time, h), dt);
+  force(solids, kStageWeight);
   {
     ScopedTimer timer(times_.boundaries);
     boundaries_.update(time + dt);
   }
   correct(solids, h);
-  book_pressure(phi_.view(), 0.5, dt);
+  book_pressure(phi_.view(), kStageWeight, dt);
   std::swap(u_old_, u_star_);  // correct() left the velocity of the step's beginning there
 
-  predict(0.5, 0.5, time + dt, h);
-  book_boundaries(0.5, dt);
+  book_boundaries(predict(0.5, 0.5, time + dt, h), dt);
   for (int n = 1; n < setup_.corrections; ++n) {
     force(solids, 1.0);
     correct(solids, h);
@@ -332,22 +333,16 @@ void Incompressible::advance(double time, double dt, SolidMask& solids) {
   }
 }
 
-void Incompressible::book_boundaries(double weight, double dt) {
-  ScopedTimer timer(times_.ledger);
-  MomentumTerms t;
-  t.u = std::as_const(*this).views(u_);
-  t.face_velocity = std::as_const(*this).views(q_);
-  if (turbulence_) t.eddy_viscosity = turbulence_->eddy_viscosity();
-  t.viscosity = static_cast<Real>(setup_.viscosity);
-  const BoundaryFlow through = boundary_flow(grid_, t, boundary_sums_);
-  const double factor = weight * dt * setup_.density;
+void Incompressible::book_boundaries(const BoundaryFlow& through, double dt) {
+  const double factor = kStageWeight * dt * setup_.density;
   ledger_.momentum_through_boundaries += factor * (through.momentum + setup_.acceleration * box_volume_);
   ledger_.mass_through_boundaries += factor * through.volume;
   ledger_.mass_in += factor * through.volume_in;
-  book_pressure(p_.view(), weight, dt);
+  book_pressure(p_.view(), kStageWeight, dt);
 }
 
 void Incompressible::book_pressure(ConstFieldView p, double weight, double dt) {
+  ScopedTimer timer(times_.ledger);
   ledger_.momentum_through_boundaries += weight * dt * setup_.density * boundary_pressure(grid_, p);
 }
 
@@ -376,7 +371,7 @@ double Incompressible::kinetic_energy() const {
 
 bool Incompressible::finite(Vec3* where) const {
   const std::array<ConstFieldView, 3> u = views(u_);
-  const Real largest = reduce_max(grid_.range(), Real(0), [=](int i, int j, int k) {
+  const Real largest = reduce_max(grid_.range(), [=](int i, int j, int k) {
     return std::abs(u[0](i, j, k)) + std::abs(u[1](i, j, k)) + std::abs(u[2](i, j, k));
   });
   if (std::isfinite(largest)) return true;

@@ -89,10 +89,10 @@ class Incompressible {
   std::vector<Field*> state();
 
  private:
-  void predict(double a, double b, double time, Real dt);
+  BoundaryFlow predict(double a, double b, double time, Real dt);
   void force(SolidMask& solids, double weight);
   void correct(const SolidMask& solids, Real dt);
-  void book_boundaries(double weight, double dt);
+  void book_boundaries(const BoundaryFlow& through, double dt);
   void book_pressure(ConstFieldView p, double weight, double dt);
   void evaluate_source(double time);
   std::array<FieldView, 3> views(std::array<Field, 3>& f);

@@ -35,21 +35,21 @@ void IncrementSmoother::prepare(double nu_dt) {
   }
 }
 
-/// Along x the recurrence runs over the registers of kLanes rows at once, transposed there and back.
+/// Along x the recurrence runs over the registers of kRealLanes rows at once, transposed there and back.
 void IncrementSmoother::smooth_x(FieldView delta, int k) const {
-  const int width = (nx_ + kLanes - 1) / kLanes * kLanes;
-  Lanes* column = reinterpret_cast<Lanes*>(thread_scratch(static_cast<std::size_t>(width * kLanes)));
+  const int width = (nx_ + kRealLanes - 1) / kRealLanes * kRealLanes;
+  RealLanes* column = reinterpret_cast<RealLanes*>(thread_scratch(static_cast<std::size_t>(width * kRealLanes)));
   const Factors& f = factors_[0];
-  for (int j0 = 0; j0 < ny_; j0 += kLanes) {
-    const int last = std::min(kLanes, ny_ - j0) - 1;
-    Lanes tile[kLanes];
-    for (int i0 = 0; i0 < width; i0 += kLanes) {
-      for (int j = 0; j < kLanes; ++j)
-        tile[j] = *reinterpret_cast<const Lanes*>(delta.row(j0 + std::min(j, last), k) + i0);
+  for (int j0 = 0; j0 < ny_; j0 += kRealLanes) {
+    const int last = std::min(kRealLanes, ny_ - j0) - 1;
+    RealLanes tile[kRealLanes];
+    for (int i0 = 0; i0 < width; i0 += kRealLanes) {
+      for (int j = 0; j < kRealLanes; ++j)
+        tile[j] = *reinterpret_cast<const RealLanes*>(delta.row(j0 + std::min(j, last), k) + i0);
       transpose(tile);
-      std::copy_n(tile, kLanes, column + i0);
+      std::copy_n(tile, kRealLanes, column + i0);
     }
-    Lanes s = column[0] * f.inverse[0];
+    RealLanes s = column[0] * f.inverse[0];
     column[0] = s;
     for (int i = 1; i < nx_; ++i) {
       const std::size_t at = static_cast<std::size_t>(i);
@@ -60,10 +60,10 @@ void IncrementSmoother::smooth_x(FieldView delta, int k) const {
       s = column[i] - f.above[static_cast<std::size_t>(i)] * s;
       column[i] = s;
     }
-    for (int i0 = 0; i0 < width; i0 += kLanes) {
-      std::copy_n(column + i0, kLanes, tile);
+    for (int i0 = 0; i0 < width; i0 += kRealLanes) {
+      std::copy_n(column + i0, kRealLanes, tile);
       transpose(tile);
-      for (int j = 0; j <= last; ++j) *reinterpret_cast<Lanes*>(delta.row(j0 + j, k) + i0) = tile[j];
+      for (int j = 0; j <= last; ++j) *reinterpret_cast<RealLanes*>(delta.row(j0 + j, k) + i0) = tile[j];
     }
   }
 }

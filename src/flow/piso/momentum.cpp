@@ -17,7 +17,7 @@ struct MomentumFlux {
   Real nu;
 
   template <int D>
-  void flux(int j, int k, int i0, int i1, Real* const (&out)[3]) const {
+  [[gnu::noinline]] void flux(int j, int k, int i0, int i1, Real* const (&out)[3]) const {
     constexpr int A = (D + 1) % 3, B = (D + 2) % 3;  // the two directions across the face
     const std::ptrdiff_t s = stride(u[0], D), sa = stride(u[0], A), sb = stride(u[0], B);
     const Real* velocity = q[D].row(j, k);
@@ -26,15 +26,15 @@ struct MomentumFlux {
     const Real* across_b = u[B].row(j, k);
     const Real* eddy = kTurbulent ? nut.row(j, k) : nullptr;
     Real *out_d = out[D], *out_a = out[A], *out_b = out[B];
-    for_each_lane(i0, i1, [=, this](int i) {
+    for_each_lane(i0, i1, [=, this](int i) __attribute__((always_inline)) {
       const int at[3] = {i, j, k};
       const FaceMetrics f = face_metrics(m[D], at[D]);
       const Real area = face_area<D>(m, i, j, k);
       const Real v = velocity[i];
-      const auto convected = [&](const Real* p) {
+      const auto convected = [&](const Real* p) __attribute__((always_inline)) {
         return v * upwind_value(v, p[i - 2 * s], p[i - s], p[i], p[i + s], f);
       };
-      const auto gradient = [&](const Real* p) { return (p[i] - p[i - s]) * f.inv_here; };
+      const auto gradient = [&](const Real* p) __attribute__((always_inline)) { return (p[i] - p[i - s]) * f.inv_here; };
       if constexpr (kTurbulent) {
         const Real viscosity = nu + f.weight * eddy[i - s] + (Real(1) - f.weight) * eddy[i];
         const auto cross = [&](std::ptrdiff_t step, Real inv_span_low, Real inv_span_high) {
@@ -60,8 +60,9 @@ struct MomentumFlux {
   }
 };
 
+/// rows: of planes k (faces in x and y), then of rows j on the lower and on the upper face in z.
 template <bool kTurbulent>
-void predict(const Grid& grid, const MomentumTerms& t) {
+BoundaryFlow predict(const Grid& grid, const MomentumTerms& t, std::vector<BoundaryFlow>& rows) {
   const MomentumFlux<kTurbulent> face{t.u,
                                       t.face_velocity,
                                       t.eddy_viscosity,
@@ -106,59 +107,30 @@ void predict(const Grid& grid, const MomentumTerms& t) {
       });
     }
   };
-  sweep<3>(grid, face, [&](int j, int k, Real* const(&balance)[3]) {
-    component(std::integral_constant<int, 0>{}, j, k, balance[0]);
-    component(std::integral_constant<int, 1>{}, j, k, balance[1]);
-    component(std::integral_constant<int, 2>{}, j, k, balance[2]);
-  });
-}
-
-/// Adds what one row of lower D-faces carries; sign +1 where they are the lower boundary of the box.
-template <int D, class Face>
-void book_row(const Face& face, int j, int k, int i0, int i1, double sign, BoundaryFlow& sum) {
-  const int ld = i1 + kLanes;
-  Real* buffer = thread_scratch(static_cast<std::size_t>(3 * ld), 2);
-  Real* rows[3] = {buffer, buffer + ld, buffer + 2 * ld};
-  face.template flux<D>(j, k, i0, i1, rows);
-  const Real* q = face.q[D].row(j, k);
-  for (int i = i0; i < i1; ++i) {
-    for (int c = 0; c < 3; ++c) sum.momentum[c] += sign * double(rows[c][i]);
-    const double volume = sign * double(face_area<D>(face.m, i, j, k)) * double(q[i]);
-    sum.volume += volume;
-    sum.volume_in += std::max(volume, 0.0);
-  }
-}
-
-template <bool kTurbulent>
-BoundaryFlow boundary_flow_of(const Grid& grid, const MomentumTerms& t, std::vector<BoundaryFlow>& scratch) {
-  const MomentumFlux<kTurbulent> face{t.u,
-                                      t.face_velocity,
-                                      t.eddy_viscosity,
-                                      {grid.metrics(0), grid.metrics(1), grid.metrics(2)},
-                                      t.viscosity};
   const int nx = grid.nx(), ny = grid.ny(), nz = grid.nz();
-  for_each_index(nz, [&](int k) {
-    BoundaryFlow sum;
-    if (grid.active(0))
-      for (int j = 0; j < ny; ++j) {
-        book_row<0>(face, j, k, 0, 1, 1.0, sum);
-        book_row<0>(face, j, k, nx, nx + 1, -1.0, sum);
-      }
-    if (grid.active(1)) {
-      book_row<1>(face, 0, k, 0, nx, 1.0, sum);
-      book_row<1>(face, ny, k, 0, nx, -1.0, sum);
-    }
-    scratch[static_cast<std::size_t>(k)] = sum;
-  });
-  for_each_index(grid.active(2) ? ny : 0, [&](int j) {
-    BoundaryFlow sum;
-    book_row<2>(face, j, 0, 0, nx, 1.0, sum);
-    book_row<2>(face, j, nz, 0, nx, -1.0, sum);
-    scratch[static_cast<std::size_t>(nz + j)] = sum;
-  });
+  rows.assign(static_cast<std::size_t>(nz + 2 * ny), {});
+  sweep<3>(
+      grid, face,
+      [&](int j, int k, Real* const(&balance)[3]) {
+        component(std::integral_constant<int, 0>{}, j, k, balance[0]);
+        component(std::integral_constant<int, 1>{}, j, k, balance[1]);
+        component(std::integral_constant<int, 2>{}, j, k, balance[2]);
+      },
+      [&](auto direction, int side, int j, int k, Real* const(&flux)[3]) {
+        constexpr int D = decltype(direction)::value;
+        const int i0 = D == 0 && side ? nx : 0, i1 = D == 0 ? i0 + 1 : nx;
+        const double sign = side ? -1.0 : 1.0;
+        BoundaryFlow& sum = rows[static_cast<std::size_t>(D < 2 ? k : nz + side * ny + j)];
+        const Real* q = t.face_velocity[D].row(j, k);
+        for (int i = i0; i < i1; ++i) {
+          for (int c = 0; c < 3; ++c) sum.momentum[c] += sign * double(flux[c][i]);
+          const double volume = sign * double(face_area<D>(m, i, j, k)) * double(q[i]);
+          sum.volume += volume;
+          sum.volume_in += std::max(volume, 0.0);
+        }
+      });
   BoundaryFlow total;
-  for (int n = 0; n < nz + (grid.active(2) ? ny : 0); ++n) {
-    const BoundaryFlow& part = scratch[static_cast<std::size_t>(n)];
+  for (const BoundaryFlow& part : rows) {
     total.momentum += part.momentum;
     total.volume += part.volume;
     total.volume_in += part.volume_in;
@@ -167,11 +139,6 @@ BoundaryFlow boundary_flow_of(const Grid& grid, const MomentumTerms& t, std::vec
 }
 
 }  // namespace
-
-BoundaryFlow boundary_flow(const Grid& grid, const MomentumTerms& terms, std::vector<BoundaryFlow>& scratch) {
-  return terms.eddy_viscosity.origin ? boundary_flow_of<true>(grid, terms, scratch)
-                                     : boundary_flow_of<false>(grid, terms, scratch);
-}
 
 Vec3 boundary_pressure(const Grid& grid, ConstFieldView p) {
   const Metrics m[3] = {grid.metrics(0), grid.metrics(1), grid.metrics(2)};
@@ -199,8 +166,10 @@ Vec3 boundary_pressure(const Grid& grid, ConstFieldView p) {
   return force;
 }
 
-void predict_momentum(const Grid& grid, const MomentumTerms& terms) {
-  terms.eddy_viscosity.origin ? predict<true>(grid, terms) : predict<false>(grid, terms);
+BoundaryFlow predict_momentum(const Grid& grid, const MomentumTerms& terms,
+                              std::vector<BoundaryFlow>& scratch) {
+  return terms.eddy_viscosity.origin ? predict<true>(grid, terms, scratch)
+                                     : predict<false>(grid, terms, scratch);
 }
 
 }  // namespace ejecta

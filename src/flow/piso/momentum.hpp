@@ -26,8 +26,6 @@ struct MomentumTerms {
   bool increment_only = false;
 };
 
-void predict_momentum(const Grid& grid, const MomentumTerms& terms);
-
 /// What crosses the boundaries of the box, counted on their faces and not from the cells' balances, so that
 /// the ledger can tell whether anything was lost inside. Positive into the box.
 struct BoundaryFlow {
@@ -36,8 +34,9 @@ struct BoundaryFlow {
   double volume_in = 0;    ///< m3/s
 };
 
-/// `scratch` has ny + nz entries.
-BoundaryFlow boundary_flow(const Grid& grid, const MomentumTerms& terms, std::vector<BoundaryFlow>& scratch);
+/// Computes terms.out and returns what crossed the boundaries. `scratch` has room for nz + 2 ny entries.
+BoundaryFlow predict_momentum(const Grid& grid, const MomentumTerms& terms,
+                              std::vector<BoundaryFlow>& scratch);
 
 /// Force of the pressure on the fluid at the boundaries, over density, m4/s2. p has filled ghosts.
 Vec3 boundary_pressure(const Grid& grid, ConstFieldView p);

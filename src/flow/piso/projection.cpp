@@ -95,12 +95,11 @@ void apply_correction(const Grid& grid, ConstFieldView phi, Real dt, const std::
 double largest_divergence(const Grid& grid, const std::array<ConstFieldView, 3>& q) {
   const Outflow out = outflow(grid, q);
   const auto speed = [&](int d) {
-    return reduce_max(grid.range(), Real(0),
-                      [=, v = q[d]](int i, int j, int k) { return std::abs(v(i, j, k)); });
+    return reduce_max(grid.range(), [=, v = q[d]](int i, int j, int k) { return std::abs(v(i, j, k)); });
   };
   const Real fastest = std::max({speed(0), speed(1), speed(2), Real(1e-30)});
   const Metrics m[3] = {grid.metrics(0), grid.metrics(1), grid.metrics(2)};
-  return reduce_max(grid.range(), Real(0), [=](int i, int j, int k) {
+  return reduce_max(grid.range(), [=](int i, int j, int k) {
     const Real volume = m[0].volume[i] * m[1].volume[j] * m[2].volume[k];
     const Real width = std::min({m[0].width[i], m[1].width[j], m[2].width[k]});
     return std::abs(out(i, j, k)) * width / (volume * fastest);

@@ -9,7 +9,7 @@
 namespace ejecta {
 namespace {
 
-int padded(int n) { return (n + kLanes - 1) / kLanes * kLanes; }
+int padded(int n) { return (n + kRealLanes - 1) / kRealLanes * kRealLanes; }
 
 }  // namespace
 

@@ -7,20 +7,20 @@
 namespace ejecta {
 namespace {
 
-/// kRows x (kVecs * kLanes) tile of C held in registers over the whole depth.
+/// kRows x (kVecs * kRealLanes) tile of C held in registers over the whole depth.
 template <int kRows, int kVecs>
 inline void tile(int depth, const Real* a, int lda, const Real* b, int ldb, Real* c, int ldc) {
-  Lanes sum[kRows][kVecs] = {};
+  RealLanes sum[kRows][kVecs] = {};
   for (int d = 0; d < depth; ++d) {
-    Lanes row[kVecs];
-    for (int v = 0; v < kVecs; ++v) row[v] = *reinterpret_cast<const Lanes*>(b + d * ldb + v * kLanes);
+    RealLanes row[kVecs];
+    for (int v = 0; v < kVecs; ++v) row[v] = *reinterpret_cast<const RealLanes*>(b + d * ldb + v * kRealLanes);
     for (int r = 0; r < kRows; ++r) {
       const Real factor = a[r * lda + d];
       for (int v = 0; v < kVecs; ++v) sum[r][v] += factor * row[v];
     }
   }
   for (int r = 0; r < kRows; ++r)
-    for (int v = 0; v < kVecs; ++v) *reinterpret_cast<Lanes*>(c + r * ldc + v * kLanes) = sum[r][v];
+    for (int v = 0; v < kVecs; ++v) *reinterpret_cast<RealLanes*>(c + r * ldc + v * kRealLanes) = sum[r][v];
 }
 
 template <int kVecs>
@@ -35,11 +35,11 @@ inline void columns(int m, int depth, const Real* a, int lda, const Real* b, int
 }  // namespace
 
 void small_gemm(int m, int n, int depth, const Real* a, int lda, const Real* b, int ldb, Real* c, int ldc) {
-  assert(n % kLanes == 0);
+  assert(n % kRealLanes == 0);
   int col = 0;
-  for (; n - col >= 3 * kLanes; col += 3 * kLanes) columns<3>(m, depth, a, lda, b + col, ldb, c + col, ldc);
-  if (n - col == 2 * kLanes) columns<2>(m, depth, a, lda, b + col, ldb, c + col, ldc);
-  if (n - col == kLanes) columns<1>(m, depth, a, lda, b + col, ldb, c + col, ldc);
+  for (; n - col >= 3 * kRealLanes; col += 3 * kRealLanes) columns<3>(m, depth, a, lda, b + col, ldb, c + col, ldc);
+  if (n - col == 2 * kRealLanes) columns<2>(m, depth, a, lda, b + col, ldb, c + col, ldc);
+  if (n - col == kRealLanes) columns<1>(m, depth, a, lda, b + col, ldb, c + col, ldc);
 }
 
 }  // namespace ejecta

@@ -70,12 +70,12 @@ struct ScalarFlux {
   Real nu, dt;
 
   template <int D>
-  void flux(int j, int k, int i0, int i1, Real* const (&out)[2]) const {
+  [[gnu::noinline]] void flux(int j, int k, int i0, int i1, Real* const (&out)[2]) const {
     const std::ptrdiff_t s = stride(nut, D);
     const Real *velocity = q[D].row(j, k), *eddy = nut.row(j, k), *blend = kSst ? f1.row(j, k) : nullptr;
     const Real *one = value[0].row(j, k), *two = value[1].row(j, k);
     Real *out_one = out[0], *out_two = out[1];
-    for_each_lane(i0, i1, [=, this](int i) {
+    for_each_lane(i0, i1, [=, this](int i) __attribute__((always_inline)) {
       const int at = D == 0 ? i : D == 1 ? j : k;
       FaceMetrics f = face_metrics(m[D], at);
       const Real v = velocity[i], area = face_area<D>(m, i, j, k);
@@ -127,7 +127,7 @@ void transport(const Grid& grid, const ScalarFlux<kSst>& face, const std::array<
     const auto update = [=](auto axisymmetric, auto unfinished) {
       GradientRow row = gradient;
       if constexpr (!axisymmetric) row.radius = nullptr;
-      for_each_lane(0, nx, [=](int i) {
+      for_each_lane(0, nx, [=](int i) __attribute__((always_inline)) {
         const Real k0 = old_k[i], s0 = old_second[i], nut = eddy[i];
         const VelocityGradient v = row(i);
         const Real strain2 = strain_squared(v);
