@@ -8,6 +8,7 @@
 #include "app/jet_source.hpp"
 #include "base/error.hpp"
 #include "base/stopwatch.hpp"
+#include "dem/walls.hpp"
 #include "sorter/launch.hpp"
 
 namespace ejecta {
@@ -22,6 +23,8 @@ Grid grid_of(const Case& c) {
 
 /// Longest step without air, s: positions in histories and reports stay smooth.
 constexpr double kFlightStep = 1e-4;
+/// The dividing plate spans the belt and more, m.
+constexpr double kPlateWidth = 1.0;
 /// Share of its greatest kinetic energy below which the air counts as dead once the valve is closed.
 constexpr double kDeadAir = 1e-3;
 
@@ -75,8 +78,12 @@ void CoupledModel::place_bodies() {
     const double t = (edge_x - first.position.x()) / first.velocity.x();
     height = first.position.z() + t * first.velocity.z() + 0.5 * t * t * gravity.z();
   }
-  splitter_.emplace(case_.splitter, nozzle, height);
+  splitter_.emplace(case_.splitter, nozzle, height, gravity.z());
   splitter_->resize(particles_.bodies().size());
+  if (!case_.splitter.solid) return;
+  WallSpec plate = splitter_->wall(kPlateWidth);
+  if (plate.material.empty()) plate.material = case_.bodies.front().material;
+  particles_.add(make_wall(plate, particles_.materials(), ""));
 }
 
 void CoupledModel::check_bodies() const {

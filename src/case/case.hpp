@@ -239,6 +239,8 @@ struct SplitterSpec {
   double height = 0.035;    ///< m, edge above the path of the undisturbed body there
   double thickness = 2e-3;  ///< m
   double length = 0.1;      ///< m, downstream extent
+  bool solid = true;        ///< a wall that bodies hit, not only a line that decides
+  std::string material;     ///< empty: that of the first body
 };
 
 /// [[probe]], [[line]], [[slice]]

@@ -85,7 +85,13 @@ std::vector<Key> keys(SplitterSpec& s) {
            "Edge above the undisturbed path there; a centre that passes above it is ejected",
            "assumption: not in the paper"},
           {"thickness", &s.thickness, length, not_negative, "Thickness of the plate", "assumption"},
-          {"length", &s.length, length, not_negative, "Extent of the plate downstream", "assumption"}};
+          {"length", &s.length, length, not_negative, "Extent of the plate downstream", "assumption"},
+          {"solid", &s.solid, none, {}, "Bodies hit the plate; else it is only the line that decides", ""},
+          {.name = "material",
+           .slot = &s.material,
+           .help = "Material of the plate",
+           .unset = "that of the first body",
+           .example = "\"steel\""}};
 }
 
 }  // namespace ejecta

@@ -41,9 +41,11 @@ double distance_box(const Vec3& half, const Vec3& p) {
 Vec3 gradient_box(const Vec3& half, const Vec3& p) {
   const Vec3 q = p.cwiseAbs() - half;
   const Vec3 sign = p.unaryExpr([](double v) { return v < 0 ? -1.0 : 1.0; });
-  int axis = 0;
-  if (q.maxCoeff(&axis) <= 0) return sign[axis] * Vec3::Unit(axis);
-  return sign.cwiseProduct(q.cwiseMax(0.0)).normalized();
+  const double nearest = q.maxCoeff();
+  if (nearest > 0) return sign.cwiseProduct(q.cwiseMax(0.0)).normalized();
+  // Equally near faces count alike: round-off must not choose one of them on one side of a turned box only.
+  const double tie = nearest - 1e-9 * half.maxCoeff();
+  return sign.cwiseProduct(q.unaryExpr([tie](double v) { return v > tie ? 1.0 : 0.0; })).normalized();
 }
 
 Vec3 support_box(const Vec3& half, const Vec3& direction) {

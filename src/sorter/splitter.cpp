@@ -4,20 +4,45 @@
 
 namespace ejecta {
 
-Splitter::Splitter(const SplitterSpec& spec, const Vec3& nozzle, double undisturbed_height)
-    : edge_(nozzle.x() + spec.distance, nozzle.y(), undisturbed_height + spec.height),
-      flight_distance_(spec.distance) {}
+Splitter::Splitter(const SplitterSpec& spec, const Vec3& nozzle, double undisturbed_height, double gravity_z)
+    : spec_(spec),
+      edge_(nozzle.x() + spec.distance, nozzle.y(), undisturbed_height + spec.height),
+      gravity_z_(gravity_z) {}
+
+WallSpec Splitter::wall(double width) const {
+  WallSpec wall;
+  wall.name = "dividing plate";
+  wall.kind = WallKind::box;
+  wall.size = {spec_.length, width, spec_.thickness};
+  wall.point = edge_ + 0.5 * Vec3(spec_.length, 0.0, -spec_.thickness);
+  wall.material = spec_.material;
+  return wall;
+}
+
+void Splitter::resize(std::size_t bodies) {
+  verdicts_.resize(bodies);
+  approach_.resize(bodies);
+}
 
 void Splitter::watch(std::span<const Body> bodies, std::span<const Vec3> before, double time, double dt) {
   for (std::size_t b = 0; b < bodies.size(); ++b) {
-    const Vec3 &from = before[b], &to = bodies[b].position;
-    if (verdicts_[b] || from.x() >= edge_.x() || to.x() < edge_.x()) continue;
-    const double share = (edge_.x() - from.x()) / (to.x() - from.x());
+    const Body& body = bodies[b];
+    const Vec3 &from = before[b], &to = body.position;
+    if (verdicts_[b] || from.x() >= edge_.x()) continue;
+    const double gap = edge_.x() - to.x(), reach = 2.0 * body.shape.bounding_radius();
+    if (const Vec3& v = body.velocity; gap > reach && v.x() > 0.0) {
+      const double t = gap / v.x();
+      approach_[b] = {v.x(), to.z() + v.z() * t + 0.5 * gravity_z_ * t * t - edge_.z()};
+    }
+    const bool passed = gap <= 0.0;
+    const bool thrown_back = gap <= reach && body.velocity.x() <= 0.0 && to.z() < edge_.z();
+    if (!passed && !thrown_back) continue;
+    const double share = passed ? (edge_.x() - from.x()) / (to.x() - from.x()) : 1.0;
     Verdict v;
-    v.clearance = from.z() + share * (to.z() - from.z()) - edge_.z();
-    v.ejected = v.clearance > 0.0;
+    v.clearance = passed ? from.z() + share * (to.z() - from.z()) - edge_.z() : approach_[b].clearance;
+    v.ejected = passed && v.clearance > 0.0;
     v.time = time - (1.0 - share) * dt;
-    v.velocity_margin = v.clearance * bodies[b].velocity.x() / flight_distance_;
+    v.velocity_margin = v.clearance * approach_[b].velocity / spec_.distance;
     verdicts_[b] = v;
   }
 }
@@ -28,17 +53,23 @@ bool Splitter::all_passed() const {
 
 std::vector<double> Splitter::state() const {
   std::vector<double> out;
-  for (const auto& v : verdicts_)
-    out.insert(out.end(), {double(v.has_value()), v ? v->clearance : 0.0, v ? v->velocity_margin : 0.0,
-                           v ? v->time : 0.0});
+  for (std::size_t b = 0; b < verdicts_.size(); ++b) {
+    const auto& v = verdicts_[b];
+    const double known = !v ? 0.0 : v->ejected ? 2.0 : 1.0;
+    out.insert(out.end(), {known, v ? v->clearance : 0.0, v ? v->velocity_margin : 0.0, v ? v->time : 0.0,
+                           approach_[b].velocity, approach_[b].clearance});
+  }
   return out;
 }
 
 void Splitter::restore(std::span<const double> state) {
-  verdicts_.assign(state.size() / 4, std::nullopt);
-  for (std::size_t b = 0; b < verdicts_.size(); ++b)
-    if (const double* s = state.data() + 4 * b; s[0] != 0.0)
-      verdicts_[b] = Verdict{s[1] > 0.0, s[1], s[2], s[3]};
+  verdicts_.assign(state.size() / 6, std::nullopt);
+  approach_.resize(verdicts_.size());
+  for (std::size_t b = 0; b < verdicts_.size(); ++b) {
+    const double* s = state.data() + 6 * b;
+    if (s[0] != 0.0) verdicts_[b] = Verdict{s[0] == 2.0, s[1], s[2], s[3]};
+    approach_[b] = {s[4], s[5]};
+  }
 }
 
 }  // namespace ejecta

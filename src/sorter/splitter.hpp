@@ -18,23 +18,34 @@ struct Verdict {
 };
 
 /// The dividing plate: its edge lies `distance` behind the jet's axis and `height` above the path of the body
-/// that no air touches. Watches every body until its centre passes the edge.
+/// that no air touches. Watches every body until its centre passes the edge, or until the plate has thrown it
+/// back below the edge.
 class Splitter {
  public:
-  Splitter(const SplitterSpec& spec, const Vec3& nozzle, double undisturbed_height);
+  Splitter(const SplitterSpec& spec, const Vec3& nozzle, double undisturbed_height, double gravity_z);
 
   const Vec3& edge() const { return edge_; }
+  /// The plate as bodies hit it: it lies level behind its edge, `width` m wide.
+  WallSpec wall(double width) const;
   /// To be called after every step, with the positions before it and the time after it.
   void watch(std::span<const Body> bodies, std::span<const Vec3> before, double time, double dt);
   const std::optional<Verdict>& verdict(std::size_t body) const { return verdicts_.at(body); }
   bool all_passed() const;
-  void resize(std::size_t bodies) { verdicts_.resize(bodies); }
+  void resize(std::size_t bodies);
   std::vector<double> state() const;
   void restore(std::span<const double> state);
 
  private:
+  SplitterSpec spec_;
   Vec3 edge_;
-  double flight_distance_;
+  double gravity_z_;
+  /// The free flight of a body as it came within its own size of the plate: what a plate that throws it back
+  /// kept it from.
+  struct Approach {
+    double velocity = 0.0;   ///< m/s, along x
+    double clearance = 0.0;  ///< m, of the centre above the edge, had it flown on
+  };
+  std::vector<Approach> approach_;
   std::vector<std::optional<Verdict>> verdicts_;
 };
 

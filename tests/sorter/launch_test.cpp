@@ -27,7 +27,7 @@ TEST(Splitter, DecidesByTheHeightAtTheEdge) {
   SplitterSpec spec;
   spec.distance = 0.25, spec.height = 0.04;
   for (double gain : {0.3, 0.7}) {
-    Splitter splitter(spec, Vec3::Zero(), 0.0);
+    Splitter splitter(spec, Vec3::Zero(), 0.0, 0.0);
     splitter.resize(1);
     Body b{.name = "b", .shape = make_sphere(0.01)};
     b.velocity = Vec3(3, 0, gain);
@@ -44,6 +44,28 @@ TEST(Splitter, DecidesByTheHeightAtTheEdge) {
     EXPECT_NEAR(v.velocity_margin, gain - 0.04 * 3.0 / 0.25, 1e-9);
     EXPECT_EQ(v.ejected, gain > 0.48);
   }
+}
+
+TEST(Splitter, ABodyThrownBackBelowTheEdgeIsNotEjected) {
+  SplitterSpec spec;
+  spec.distance = 0.25, spec.height = 0.04;
+  Splitter splitter(spec, Vec3::Zero(), 0.0, 0.0);
+  splitter.resize(1);
+  Body b{.name = "b", .shape = make_sphere(0.01)};
+  b.velocity = Vec3(3, 0, 0.24);
+  double time = 0.0;
+  const double dt = 1e-4;
+  while (!splitter.all_passed() && time < 1.0) {
+    const std::vector<Vec3> before{b.position};
+    if (b.position.x() > 0.245) b.velocity.x() = -1.0;  // what the plate does
+    b.position += dt * b.velocity;
+    time += dt;
+    splitter.watch(std::vector<Body>{b}, before, time, dt);
+  }
+  ASSERT_TRUE(splitter.all_passed());
+  EXPECT_FALSE(splitter.verdict(0)->ejected);
+  EXPECT_NEAR(splitter.verdict(0)->clearance, 0.25 * 0.08 - 0.04, 1e-9);  // of the flight it was kept from
+  EXPECT_NEAR(splitter.verdict(0)->velocity_margin, 0.24 - 0.48, 1e-9);
 }
 
 TEST(SelfSimilarJet, CarriesTheThrustOfTheValve) {
