@@ -12,8 +12,8 @@ namespace ejecta {
 struct Verdict {
   bool ejected = false;
   double clearance = 0.0;  ///< m, of the centre above the edge as it passes (negative: below)
-  double velocity_margin =
-      0.0;            ///< m/s: gain of vertical velocity at the jet beyond what just clears the edge
+  double velocity_margin = 0.0;  ///< m/s: gain of vertical velocity at the jet beyond what just clears the edge,
+                                 ///< from the flight before the plate could touch the body
   double time = 0.0;  ///< s, of passing
 };
 
