@@ -6,7 +6,6 @@
 #include "app/forecast.hpp"
 #include "base/units.hpp"
 #include "case/extent.hpp"
-#include "case/sense.hpp"
 #include "case/words.hpp"
 
 namespace ejecta {
@@ -69,7 +68,7 @@ std::string body_part(const Case& c, const BodySpec& b) {
 
 }  // namespace
 
-std::string check_report(const Case& c, double bandwidth) {
+std::string check_report(const Case& c, const std::vector<Problem>& warnings, double bandwidth) {
   std::string text =
       fmt::format("{}{}\n", c.path, c.run.title.empty() ? "" : fmt::format(": {}", c.run.title));
   if (c.flow.solver == FlowSolver::none)
@@ -79,7 +78,7 @@ std::string check_report(const Case& c, double bandwidth) {
   const std::vector<std::string> assumed = assumptions(c);
   if (!assumed.empty()) text += "  assumptions in force:\n";
   for (const std::string& a : assumed) text += fmt::format("    {}\n", a);
-  for (const Problem& p : check_sense(c)) text += render(p);
+  for (const Problem& p : warnings) text += render(p);
   return text;
 }
 

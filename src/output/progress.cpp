@@ -97,9 +97,11 @@ void Progress::update(const ProgressState& s) {
     last_written_ = t;
   }
   if (options_.verbosity == Verbosity::quiet) return;
-  if (t - last_shown_ < (options_.terminal ? kBarInterval : options_.line_interval)) return;
+  const bool every_step = options_.verbosity == Verbosity::verbose;
+  const double interval = every_step ? 0.0 : options_.terminal ? kBarInterval : options_.line_interval;
+  if (t - last_shown_ < interval) return;
   last_shown_ = t;
-  if (options_.terminal) draw_bar(s);
+  if (options_.terminal && !every_step) draw_bar(s);
   else out_ << status(s) << std::endl;
 }
 
@@ -118,10 +120,6 @@ void Progress::note(const std::string& line) {
   if (bar_shown_) out_ << kClearLine;
   bar_shown_ = false;
   out_ << line << std::endl;
-}
-
-void Progress::detail(const std::string& line) {
-  if (options_.verbosity == Verbosity::verbose) note(line);
 }
 
 void Progress::write_file(const ProgressState& s, const std::string& state) const {

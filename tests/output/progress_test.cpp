@@ -54,6 +54,16 @@ TEST(Progress, BarOnATerminalWithinItsWidth) {
   EXPECT_THAT(d.out.str(), HasSubstr("done at t = 100.000 ms"));
 }
 
+TEST(Progress, VerboseIsALineEveryStepEvenOnATerminal) {
+  Driven d;
+  d.options.verbosity = Verbosity::verbose;
+  d.options.terminal = true;
+  d.run();
+  const std::string text = d.out.str();
+  EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 102);  // 101 steps and the end
+  EXPECT_THAT(text, Not(HasSubstr("\r")));
+}
+
 TEST(Progress, QuietSaysNothingButStillWritesTheFile) {
   const ScratchDirectory dir;
   Driven d;
