@@ -180,7 +180,7 @@ class Run {
     for (const std::string& damage : newest.damaged) fmt::print(stderr, "warning: {}\n", damage);
     if (!newest.reader)
       throw InputError(
-          fmt::format("{} holds no checkpoint to resume from; run without --resume", path_.string()));
+          fmt::format("{} holds no checkpoint to resume from; start anew with --force", path_.string()));
     reader_.emplace(std::move(*newest.reader));
     return reader_->at().time;
   }

@@ -89,6 +89,7 @@ void Progress::update(const ProgressState& s) {
   const double t = now();
   if (!started_) {
     sample_ = {t, s.time, s.step};
+    if (!options_.terminal) last_shown_ = t;  // a line of the first step says nothing yet
     started_ = true;
   }
   measure(s, t);
