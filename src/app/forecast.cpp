@@ -149,6 +149,7 @@ double disk_space(const Case& c, const Grid& grid, std::int64_t steps) {
 Forecast forecast(const Case& c) {
   Forecast f;
   f.time_step = c.run.time_step.value_or(c.run.time_step_max);
+  f.blows_until = blows_until(c);
   if (!has_flow(c)) return f;
   const Grid grid = grid_of(c);
   f.cells = grid.cells();
@@ -163,7 +164,6 @@ Forecast forecast(const Case& c) {
   f.fastest = fastest_speed(c, grid);
   if (!c.run.time_step && f.fastest > 0.0)
     f.time_step = std::min(c.run.time_step_max, c.run.courant * f.smallest_cell / f.fastest);
-  f.blows_until = blows_until(c);
   f.steps =
       f.time_step < f.blows_until ? static_cast<std::int64_t>(std::ceil(f.blows_until / f.time_step)) : 1;
   f.memory = 20e6 + static_cast<double>(f.cells) * held_fields(c) * sizeof(Real);

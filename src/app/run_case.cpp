@@ -8,6 +8,7 @@
 #include "app/case_changes.hpp"
 #include "app/coupled_model.hpp"
 #include "app/exit_code.hpp"
+#include "app/forecast.hpp"
 #include "app/run_outputs.hpp"
 #include "app/run_result.hpp"
 #include "app/signals.hpp"
@@ -60,6 +61,8 @@ class Run {
     clock_.add_event(c.run.end_time);
     outputs_->add_events(clock_, c.run.end_time);
     clock_.add_events_every(c.checkpoint.every_time, 0.0, c.run.end_time);
+    // A verdict comes in free flight, which costs nothing: what is left to wait for is the air.
+    busy_until_ = std::min(c.run.end_time, forecast(c).blows_until);
     if (resumed) restore();
   }
 
@@ -113,7 +116,7 @@ class Run {
     return p;
   }
   output::ProgressState progress_state(double dt) const {
-    return {clock_.time(),    case_.run.end_time,
+    return {clock_.time(),    std::max(busy_until_, clock_.time()),
             clock_.step(),    dt,
             model_.courant(), model_.air() ? model_.grid().cells() : 0};
   }
@@ -229,7 +232,7 @@ class Run {
   std::unique_ptr<RunOutputs> outputs_;
   std::optional<output::CheckpointReader> reader_;
   Clock clock_;
-  double wall_ = 0.0, wall_before_ = 0.0;
+  double wall_ = 0.0, wall_before_ = 0.0, busy_until_ = 0.0;
   output::OperatorTime outputs_time_{"outputs", "histories, fields, slices, replay", 0.0, 0},
       checkpoints_time_{"checkpoints", "the state to resume from", 0.0, 0};
 };
