@@ -157,9 +157,10 @@ class CommandLine(unittest.TestCase):
         store.mkdir()
         (store / "jet-1.h5").write_bytes(b"0" * 1000)
         (store / "kept").mkdir()
+        (store / "thesis.txt").write_text("not ours")
         self.assertIn("jet-1.h5", ejecta("cache", EJECTA_CACHE=str(store)).stdout)
-        self.assertIn("1 files removed", ejecta("cache", "--clear", EJECTA_CACHE=str(store)).stdout)
-        self.assertEqual([p.name for p in store.iterdir()], ["kept"])
+        self.assertIn("jets removed: 1", ejecta("cache", "--clear", EJECTA_CACHE=str(store)).stdout)
+        self.assertEqual(sorted(p.name for p in store.iterdir()), ["kept", "thesis.txt"])
 
     def test_validate_passes_and_fails_with_its_own_code(self):
         passing = BOUNCE + '[[expect]]\nquantity = "/steps"\nat_least = 1\n'
