@@ -15,7 +15,8 @@ std::vector<std::filesystem::directory_entry> files(const std::filesystem::path&
   std::vector<std::filesystem::directory_entry> list;
   if (!std::filesystem::is_directory(directory)) return list;
   for (const auto& entry : std::filesystem::directory_iterator(directory))
-    if (entry.is_regular_file() && entry.path().filename().string().starts_with("jet-")) list.push_back(entry);
+    if (entry.is_regular_file() && entry.path().filename().string().starts_with("jet-"))
+      list.push_back(entry);
   return list;
 }
 

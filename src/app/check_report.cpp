@@ -48,7 +48,7 @@ std::string flow_part(const Case& c, double bandwidth) {
         "  steps        about {:.0f} of {} while the fluid moves, up to {} ({:.3g} m/s at Courant {})\n",
         two_digits(static_cast<double>(f.steps)), time_words(f.time_step), time_words(f.blows_until),
         f.fastest, c.run.courant);
-    text += fmt::format("  time         {} on this machine, if nothing faster appears\n",
+    text += fmt::format("  time         {} on this machine, longer if the fluid gets faster\n",
                         duration_words(expected_seconds(c, f, bandwidth)));
   } else {
     text += "  steps        unknown: no velocity is given, the flow makes its own\n";

@@ -11,7 +11,7 @@ namespace ejecta {
 namespace {
 
 constexpr double kPixels = 24000.0, kPixelsAbove = 8000.0;  ///< of the rasters
-constexpr double kPlateWidth = 0.08;  ///< m, as drawn
+constexpr double kPlateWidth = 0.08;                        ///< m, as drawn
 constexpr double kChordShare = 0.02;  ///< of a body's radius: how far its triangles may lie from its surface
 
 /// The grid begins at a plane of symmetry through the origin.

@@ -116,8 +116,7 @@ class Run {
     return p;
   }
   output::ProgressState progress_state(double dt) const {
-    return {clock_.time(),    std::max(busy_until_, clock_.time()),
-            clock_.step(),    dt,
+    return {clock_.time(),    std::max(busy_until_, clock_.time()),    clock_.step(), dt,
             model_.courant(), model_.air() ? model_.grid().cells() : 0};
   }
   bool finished() const { return clock_.time() >= case_.run.end_time * (1.0 - 1e-12) || model_.finished(); }

@@ -59,7 +59,7 @@ TEST(Forecast, MemoryAndTimeGrowWithTheCells) {
 
 TEST(Forecast, FieldOutputNeedsDisk) {
   EXPECT_GT(forecast(ejection({"output.fields_interval=1 ms"})).disk,
-            forecast(ejection()).disk + 150 * 288000 * 4.0);
+            forecast(ejection()).disk + 15 * 288000 * 4.0);
 }
 
 TEST(Forecast, AssumptionsInForceAreSpeltOut) {
