@@ -114,12 +114,17 @@ class Run:
         return Table(self.directory / "history" / f"{name}.csv")
 
     def _replay_lines(self):
-        text = (self.directory / "replay.jsonl").read_text()
+        file = self.directory / "replay.jsonl"
+        text = file.read_text() if file.exists() else ""  # a case with output.report = false has none
         return text[: text.rfind("\n") + 1].splitlines()
 
     def replay_header(self):
-        """Domain, rasters, plates, nozzles; bodies with `vertices` (n, 3) in body axes and `triangles` (n, 3)."""
-        header = json.loads(self._replay_lines()[0])
+        """Domain, rasters, plates, nozzles; bodies with `vertices` (n, 3) in body axes and `triangles` (n, 3). None for
+        a run without a replay."""
+        lines = self._replay_lines()
+        if not lines:
+            return None
+        header = json.loads(lines[0])
         for body in header["bodies"]:
             for key, kind in (("vertices", numpy.float32), ("triangles", numpy.uint32)):
                 body[key] = numpy.frombuffer(base64.b64decode(body[key]), kind).reshape(-1, 3)
@@ -127,7 +132,7 @@ class Run:
 
     def frames(self):
         lines = self._replay_lines()
-        header = json.loads(lines[0])
+        header = json.loads(lines[0]) if lines else None
         return [Frame(header, json.loads(line)) for line in lines[1:]]
 
     def times(self, series):

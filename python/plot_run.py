@@ -26,6 +26,10 @@ def strongest_moment(run, bodies):
 def plot_slice(axes, run, time):
     header = run.replay_header()
     frames = [frame for frame in run.frames() if frame.slices]
+    if not frames:
+        axes.set_axis_off()
+        axes.set_title("no air recorded")
+        return
     frame = min(frames, key=lambda f: abs(f.time - time))
     air = frame.slices[0]
     image = axes.pcolormesh(air.first * 1e3, air.second * 1e3, air.speed, cmap="viridis", shading="nearest")
@@ -53,7 +57,7 @@ def main(directory, picture):
         path.plot(table["x"] * 1e3, table["z"] * 1e3, label=label)
         velocity.plot(table["time"] * 1e3, table["velocity_z"], label=label)
         force.plot(table["time"] * 1e3, table["force_z"], label=label)
-    for plate in run.replay_header()["plates"]:
+    for plate in (run.replay_header() or {"plates": []})["plates"]:
         ends = numpy.array(plate["edge"]) + numpy.outer([0, plate["length"]], plate["along"])
         path.plot(ends[:, 0] * 1e3, ends[:, 2] * 1e3, "k", linewidth=3, label=plate["name"])
     path.set(xlabel="x [mm]", ylabel="z [mm]", title="Path")

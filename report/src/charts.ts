@@ -2,7 +2,7 @@ import uPlot from "uplot";
 import "uplot/dist/uPlot.min.css";
 import { isDark } from "./colour";
 import { h } from "./dom";
-import { fixed, short, unitText } from "./format";
+import { alike, fixed, short, unitText } from "./format";
 import type { Player } from "./player";
 
 export interface Series {
@@ -54,6 +54,9 @@ export function prefixFor(largest: number, unit: string): { factor: number; unit
 export function chart(spec: ChartSpec, height = 210): HTMLElement {
   const holder = h("div", { class: "chart", role: "img", "aria-label": `${spec.title}, ${spec.yLabel} over ${spec.xLabel}. ${summary(spec)}.` });
   const figure = h("figure", { class: "chart-figure" }, h("figcaption", {}, spec.title), holder);
+  let largest = 0;
+  for (const s of spec.series) for (let n = 0; n < s.values.length; ++n) largest = Math.max(largest, Math.abs(s.values[n]!) || 0);
+  const text = alike(largest);
   let plot: uPlot | undefined;
   const marker = h("div", { class: "now-line", "aria-hidden": "true" });
 
@@ -94,7 +97,7 @@ export function chart(spec: ChartSpec, height = 210): HTMLElement {
         { label: spec.xLabel, value: (_u, v) => (v == null ? "\u2013" : short(v, 4)) },
         ...spec.series.map((s): uPlot.Series => ({
           label: s.label, stroke: s.colour(dark), width: 1.6, dash: s.dashed ? [6, 4] : undefined, points: { show: false }, pxAlign: 0,
-          value: (_u, v) => (v == null ? "\u2013" : short(v, 4)),
+          value: (_u, v) => (v == null ? "\u2013" : text(v)),
         })),
       ],
     }, [spec.x, ...spec.series.map((s) => s.values)] as unknown as uPlot.AlignedData, holder);

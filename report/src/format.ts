@@ -16,6 +16,13 @@ export function short(value: number, digits = 3): string {
   return `${mantissa!.replace("-", "\u2212")}\u00d710${superscript(Number(exponent))}`;
 }
 
+/** Decimals that show `digits` digits of the largest value and no more: beside 3 m/s, 0.0000002 is 0. */
+export function alike(largest: number, digits = 4): (value: number) => string {
+  if (!(largest >= 1e-3 && largest < 1e5)) return (value) => (Math.abs(value) < largest * 10 ** -digits ? "0" : short(value, digits));
+  const decimals = Math.max(0, digits - 1 - Math.floor(Math.log10(largest)));
+  return (value) => fixed(value, decimals);
+}
+
 function superscript(n: number): string {
   const digits = "\u2070\u00b9\u00b2\u00b3\u2074\u2075\u2076\u2077\u2078\u2079";
   return (n < 0 ? "\u207b" : "") + [...String(Math.abs(n))].map((d) => digits[Number(d)]).join("");
@@ -35,6 +42,7 @@ export function duration(seconds: number): string {
 /** "momentum_relative_residual" -> "Momentum relative residual". */
 export function words(key: string): string {
   const text = key.replace(/_/g, " ");
+  if (text.length === 1) return text; // a symbol: k is no kelvin
   return text.charAt(0).toUpperCase() + text.slice(1);
 }
 

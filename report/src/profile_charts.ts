@@ -41,11 +41,12 @@ function unitIn(run: Run, quantity: string): string {
   return "1";
 }
 
-/** Lines of result.json: profiles at the end of the run. */
+/** Lines of result.json: profiles at the end of the run, where no history shows more. */
 function finalProfiles(runs: Run[]): HTMLElement[] {
   return runs.flatMap((run) => {
     const lines = (run.result?.["lines"] ?? {}) as { [line: string]: { [quantity: string]: number[] } };
-    return Object.entries(lines).flatMap(([name, line]) => {
+    const once = Object.entries(lines).filter(([name]) => !run.history.has(`line-${name}`));
+    return once.flatMap(([name, line]) => {
       const x = (line["position_m"] ?? []).map((v) => v * 1e3);
       return Object.entries(line).filter(([quantity]) => quantity !== "position_m").map(([quantity, values]) => chart({
         title: `Line ${name} at the end: ${words(quantity).toLowerCase()}${runs.length > 1 ? `, ${run.name}` : ""}`,

@@ -99,7 +99,11 @@ export function replayView(runs: Run[], player: Player): HTMLElement | null {
   }
 
   const view = h("div", { class: "replay", tabindex: 0, role: "group", "aria-label": "Replay" }, panels, controls(shown, player),
-    h("p", { class: "hint" }, "Space plays and pauses, arrow keys step. Drag in space to turn, scroll to zoom. A click in a chart below goes to that moment."));
+    h("p", { class: "hint" },
+      shown.some((run) => run.replay!.valveOpen.length > 0) ? h("span", { class: "key-band valve" }, "valve commanded open") : null,
+      air ? h("span", { class: "key-band air" }, "air computed") : null,
+      "Space plays and pauses, arrow keys step. Drag in space to turn, scroll to zoom. In a chart below, a click goes to that " +
+      "moment, dragging zooms, a double click shows all."));
   view.addEventListener("keydown", (event) => {
     const target = event.target as HTMLElement;
     if (["SELECT", "BUTTON"].includes(target.tagName)) return;

@@ -163,5 +163,5 @@ export function provenanceTable(runs: Run[]): HTMLElement {
 /** Every number of result.json, in full. */
 export function resultTable(run: Run, r: number): HTMLElement {
   return table(["Key of result.json", "Value"], leaves(run.result as Json, "").map(([path, value]) =>
-    [h("code", {}, path), h("span", { "data-exact": path, "data-run": r }, String(value))]), [1]);
+    [h("code", {}, path), h("span", { class: "long", "data-exact": path, "data-run": r }, String(value))]));
 }

@@ -10,11 +10,13 @@
 namespace ejecta {
 namespace {
 
+/// Our own only: the directory may be one the user keeps other things in.
 std::vector<std::filesystem::directory_entry> files(const std::filesystem::path& directory) {
   std::vector<std::filesystem::directory_entry> list;
   if (!std::filesystem::is_directory(directory)) return list;
   for (const auto& entry : std::filesystem::directory_iterator(directory))
-    if (entry.is_regular_file()) list.push_back(entry);
+    if (entry.is_regular_file() && entry.path().filename().string().starts_with("jet-"))
+      list.push_back(entry);
   return list;
 }
 
@@ -36,10 +38,10 @@ std::string cache_listing(const std::filesystem::path& directory) {
   double total = 0.0;
   for (const auto& entry : files(directory)) {
     const double size = static_cast<double>(entry.file_size());
-    text += fmt::format("  {:>10.1f} MB  {}\n", size / 1e6, entry.path().filename().string());
+    text += fmt::format("  {:>10.1f} kB  {}\n", size / 1e3, entry.path().filename().string());
     total += size;
   }
-  return text + fmt::format("  {:>10.1f} MB  in all\n", total / 1e6);
+  return text + fmt::format("  {:>10.1f} kB  in all\n", total / 1e3);
 }
 
 int clear_cache(const std::filesystem::path& directory) {

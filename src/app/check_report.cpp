@@ -6,7 +6,6 @@
 #include "app/forecast.hpp"
 #include "base/units.hpp"
 #include "case/extent.hpp"
-#include "case/sense.hpp"
 #include "case/words.hpp"
 
 namespace ejecta {
@@ -49,7 +48,7 @@ std::string flow_part(const Case& c, double bandwidth) {
         "  steps        about {:.0f} of {} while the fluid moves, up to {} ({:.3g} m/s at Courant {})\n",
         two_digits(static_cast<double>(f.steps)), time_words(f.time_step), time_words(f.blows_until),
         f.fastest, c.run.courant);
-    text += fmt::format("  time         {} on this machine, if nothing faster appears\n",
+    text += fmt::format("  time         {} on this machine, longer if the fluid gets faster\n",
                         duration_words(expected_seconds(c, f, bandwidth)));
   } else {
     text += "  steps        unknown: no velocity is given, the flow makes its own\n";
@@ -69,7 +68,7 @@ std::string body_part(const Case& c, const BodySpec& b) {
 
 }  // namespace
 
-std::string check_report(const Case& c, double bandwidth) {
+std::string check_report(const Case& c, const std::vector<Problem>& warnings, double bandwidth) {
   std::string text =
       fmt::format("{}{}\n", c.path, c.run.title.empty() ? "" : fmt::format(": {}", c.run.title));
   if (c.flow.solver == FlowSolver::none)
@@ -79,7 +78,7 @@ std::string check_report(const Case& c, double bandwidth) {
   const std::vector<std::string> assumed = assumptions(c);
   if (!assumed.empty()) text += "  assumptions in force:\n";
   for (const std::string& a : assumed) text += fmt::format("    {}\n", a);
-  for (const Problem& p : check_sense(c)) text += render(p);
+  for (const Problem& p : warnings) text += render(p);
   return text;
 }
 

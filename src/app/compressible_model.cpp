@@ -44,9 +44,10 @@ class CompressibleModel : public FlowModel {
   double density() const override { return case_.fluid.density; }
   std::array<ConstFieldView, 3> velocity() const override { return {view(kU), view(kV), view(kW)}; }
   std::vector<output::CellField> fields() override {
-    std::vector<output::CellField> all{output::vector_field("velocity", view(kU), view(kV), view(kW)),
-                                       output::scalar_field("density", view(kRho)),
-                                       output::scalar_field("pressure_above_reference", view(kP))};
+    std::vector<output::CellField> all{
+        output::vector_field("velocity", view(kU), view(kV), view(kW)),
+        output::scalar_field("density", view(kRho)),
+        output::scalar_field("pressure", view(kP), 1.0, solver_->options().reference_pressure)};
     if (turbulent()) {
       all.push_back(output::scalar_field("k", view(kK)));
       all.push_back(output::scalar_field(

@@ -126,22 +126,25 @@ double count_of(double interval, double end) {
   return interval > 0.0 ? std::floor(end / interval) + 1.0 : 0.0;
 }
 
-double disk_space(const Case& c, const Grid& grid, std::int64_t steps) {
-  const double real = sizeof(float), written_fields = c.output.fields.empty()
-                                                          ? 7.0
-                                                          : static_cast<double>(c.output.fields.size()) + 2.0;
-  const double cells = static_cast<double>(grid.cells());
-  double bytes = count_of(c.output.fields_interval, c.run.end_time) * cells * written_fields * real;
-  for (const SliceSpec& s : c.slices)
-    bytes +=
-        count_of(c.output.slices_interval, c.run.end_time) * cells / grid.n(s.axis) * written_fields * real;
+double disk_space(const Case& c, const Grid& grid, const Forecast& f) {
+  const double cells = static_cast<double>(grid.cells()),
+               all = c.flow.turbulence == TurbulenceModel::laminar ? 4.0 : 7.0;
+  // Numbers a cell: a vector stands for two more.
+  const double numbers = c.output.fields.empty() ? all : static_cast<double>(c.output.fields.size()) + 2.0;
+  const double slices = count_of(c.output.slices_interval, f.blows_until);
+  double bytes = count_of(c.output.fields_interval, f.blows_until) * cells * numbers * sizeof(float);
+  for (const SliceSpec& s : c.slices) bytes += slices * cells / grid.n(s.axis) * numbers * sizeof(float);
+  constexpr double row = 400.0, cell_of_row = 20.0;  // text
+  for (const LineSpec& l : c.lines) bytes += slices * l.points * (numbers + 3.0) * cell_of_row;
   const double rows = c.output.history_interval > 0.0 ? count_of(c.output.history_interval, c.run.end_time)
-                                                      : static_cast<double>(steps);
-  constexpr double row = 400.0;  // text
+                                                      : static_cast<double>(f.steps);
   bytes += rows * row * static_cast<double>(c.bodies.size() + c.probes.size() + 1);
+  // The page itself, and each frame in the replay and once more in the page.
+  constexpr double page = 0.7e6, frame = 13e3;
+  if (c.output.report) bytes += page + 2.0 * frame * (c.output.slices_interval > 0.0 ? slices : 200.0);
   const bool checkpoints =
       c.checkpoint.every_steps > 0 || c.checkpoint.every_time > 0.0 || c.checkpoint.every_wall_time > 0.0;
-  return bytes + (checkpoints ? 2.0 * cells * 8.0 * sizeof(Real) : 0.0);  // the last two are kept
+  return bytes + (checkpoints ? 2.0 * cells * held_fields(c) * sizeof(Real) : 0.0);  // the last two are kept
 }
 
 }  // namespace
@@ -149,6 +152,7 @@ double disk_space(const Case& c, const Grid& grid, std::int64_t steps) {
 Forecast forecast(const Case& c) {
   Forecast f;
   f.time_step = c.run.time_step.value_or(c.run.time_step_max);
+  f.blows_until = blows_until(c);
   if (!has_flow(c)) return f;
   const Grid grid = grid_of(c);
   f.cells = grid.cells();
@@ -163,11 +167,10 @@ Forecast forecast(const Case& c) {
   f.fastest = fastest_speed(c, grid);
   if (!c.run.time_step && f.fastest > 0.0)
     f.time_step = std::min(c.run.time_step_max, c.run.courant * f.smallest_cell / f.fastest);
-  f.blows_until = blows_until(c);
   f.steps =
       f.time_step < f.blows_until ? static_cast<std::int64_t>(std::ceil(f.blows_until / f.time_step)) : 1;
   f.memory = 20e6 + static_cast<double>(f.cells) * held_fields(c) * sizeof(Real);
-  f.disk = disk_space(c, grid, f.steps);
+  f.disk = disk_space(c, grid, f);
   return f;
 }
 

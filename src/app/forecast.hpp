@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "case/case.hpp"
+#include "case/problem.hpp"
 
 namespace ejecta {
 
@@ -29,7 +30,7 @@ double measured_bandwidth();
 /// The assumptions in force: keys whose default is an assumption and that this case uses, with their values.
 std::vector<std::string> assumptions(const Case& c);
 
-/// All of it as the text of `ejecta check`.
-std::string check_report(const Case& c, double bandwidth);
+/// All of it as the text of `ejecta check`, with the warnings of the case.
+std::string check_report(const Case& c, const std::vector<Problem>& warnings, double bandwidth);
 
 }  // namespace ejecta

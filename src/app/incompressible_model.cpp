@@ -94,7 +94,7 @@ class IncompressibleModel : public FlowModel {
     const auto u = flow_->velocity();
     std::vector<output::CellField> all{
         output::vector_field("velocity", u[0], u[1], u[2]),
-        output::scalar_field("pressure_over_density", flow_->pressure_field().view())};
+        output::scalar_field("pressure", flow_->pressure_field().view(), density_)};
     if (const TwoEquation* t = flow_->turbulence()) {
       all.push_back(output::scalar_field("k", t->k().view()));
       all.push_back(output::scalar_field(omega_ ? "omega" : "epsilon", t->second().view()));

@@ -1,11 +1,14 @@
 #include <fmt/format.h>
 
+#include <cstdio>
 #include <filesystem>
 #include <iostream>
 #include <memory>
 
+#include "app/case_changes.hpp"
 #include "app/coupled_model.hpp"
 #include "app/exit_code.hpp"
+#include "app/forecast.hpp"
 #include "app/run_outputs.hpp"
 #include "app/run_result.hpp"
 #include "app/signals.hpp"
@@ -14,7 +17,10 @@
 #include "base/error.hpp"
 #include "base/parallel.hpp"
 #include "base/stopwatch.hpp"
+#include "base/text.hpp"
+#include "case/load.hpp"
 #include "case/write.hpp"
+#include "output/output_file.hpp"
 #include "output/progress.hpp"
 #include "output/report.hpp"
 #include "output/verdict.hpp"
@@ -40,20 +46,23 @@ class Run {
         progress_(std::cerr, progress_options()) {
     provenance_ = {.command = "ejecta run " + c.path,
                    .case_path = c.path,
-                   .input = write_case(c),
+                   .input = write_case(with_absolute_files(c)),
                    .threads = thread_count()};
     std::optional<double> resumed;
-    if (options.resume) resumed = find_checkpoint();
-    if (!options.resume) {
-      directory_.write_case(provenance_.input);
-      directory_.write_manifest(output::make_manifest(provenance_));
+    if (options.resume) {
+      refuse_another_case();
+      resumed = find_checkpoint();
     }
+    directory_.write_case(provenance_.input);
+    if (!options.resume) directory_.write_manifest(output::make_manifest(provenance_));
     outputs_ =
         std::make_unique<RunOutputs>(c, model_, directory_, output::provenance_lines(provenance_), resumed);
     for (double t : model_.events()) clock_.add_event(t);
     clock_.add_event(c.run.end_time);
     outputs_->add_events(clock_, c.run.end_time);
     clock_.add_events_every(c.checkpoint.every_time, 0.0, c.run.end_time);
+    // A verdict comes in free flight, which costs nothing: what is left to wait for is the air.
+    busy_until_ = std::min(c.run.end_time, forecast(c).blows_until);
     if (resumed) restore();
   }
 
@@ -61,13 +70,14 @@ class Run {
     SignalWatch signals;
     const double start = wall_seconds() - wall_before_;
     double last_checkpoint = wall_seconds();
-    if (clock_.step() == 0) outputs_->observe(0.0, 0);
+    progress_.note(start_line());
+    if (clock_.step() == 0) observe();
     while (!finished()) {
       const double dt = clock_.land_on_events(model_.stable_dt(clock_.time()));
       model_.advance(clock_.time(), dt);
       clock_.tick(dt);
       if (clock_.step() % kCheckInterval == 0) model_.require_finite(clock_.time());
-      outputs_->observe(clock_.time(), clock_.step());
+      observe();
       progress_.update(progress_state(dt));
       wall_ = wall_seconds() - start;
       const bool stop = signals.stop_requested();
@@ -77,7 +87,8 @@ class Run {
       }
       if (stop) {
         progress_.finish(progress_state(dt), "stopped");
-        progress_.note(fmt::format("stopped at t = {:.6g} ms; continue with --resume", clock_.time() * 1e3));
+        progress_.note(
+            fmt::format("continue with\n  ejecta run {} --out {} --resume", case_.path, path_.string()));
         return exit_stopped;
       }
     }
@@ -88,7 +99,13 @@ class Run {
     return exit_done;
   }
 
-  void give_up() { progress_.finish(progress_state(0.0), "diverged"); }
+  /// Leaves the reason in progress.json, if that can still be written.
+  void give_up(const std::string& state) {
+    try {
+      progress_.finish(progress_state(0.0), state);
+    } catch (const Error&) {
+    }
+  }
 
  private:
   output::ProgressOptions progress_options() const {
@@ -99,11 +116,31 @@ class Run {
     return p;
   }
   output::ProgressState progress_state(double dt) const {
-    return {clock_.time(),    case_.run.end_time,
-            clock_.step(),    dt,
+    return {clock_.time(),    std::max(busy_until_, clock_.time()),    clock_.step(), dt,
             model_.courant(), model_.air() ? model_.grid().cells() : 0};
   }
   bool finished() const { return clock_.time() >= case_.run.end_time * (1.0 - 1e-12) || model_.finished(); }
+
+  std::string start_line() const {
+    const auto bodies = model_.particles().bodies().size();
+    return fmt::format("{}: {} cells, {} bod{}, {} thread{} -> {}{}", case_.path,
+                       model_.flow() ? model_.grid().cells() : 0, bodies, bodies == 1 ? "y" : "ies",
+                       thread_count(), thread_count() == 1 ? "" : "s", path_.string(),
+                       clock_.step() > 0 ? fmt::format(", from t = {:.3f} ms", 1e3 * clock_.time()) : "");
+  }
+
+  void observe() {
+    const ScopedTimer timer(outputs_time_.seconds);
+    outputs_->observe(clock_.time(), clock_.step());
+    ++outputs_time_.calls;
+  }
+
+  std::vector<output::OperatorTime> operator_times() const {
+    std::vector<output::OperatorTime> all = model_.operator_times();
+    all.push_back(outputs_time_);
+    if (checkpoints_time_.calls > 0) all.push_back(checkpoints_time_);
+    return all;
+  }
 
   bool checkpoint_due(double last) const {
     const CheckpointSpec& spec = case_.checkpoint;
@@ -114,6 +151,8 @@ class Run {
   }
 
   void write_checkpoint() {
+    const ScopedTimer timer(checkpoints_time_.seconds);
+    ++checkpoints_time_.calls;
     model_.require_finite(clock_.time());
     output::CheckpointWriter w = store_.begin({clock_.time(), clock_.step()});
     const auto fields = model_.state_fields();
@@ -127,12 +166,23 @@ class Run {
     store_.commit(w);
   }
 
+  void refuse_another_case() const {
+    const std::vector<std::string> changed =
+        changed_keys(output::read_file(path_ / "case.toml"), provenance_.input);
+    if (changed.empty()) return;
+    throw InputError(fmt::format(
+        "{} was started with another case: {} changed\n  go on as it was:  ejecta run {} --out {} --resume\n"
+        "  start anew:       ejecta run {} --out {} --force",
+        path_.string(), joined(changed), (path_ / "case.toml").string(), path_.string(), case_.path,
+        path_.string()));
+  }
+
   std::optional<double> find_checkpoint() {
     auto newest = store_.newest();
-    for (const std::string& damage : newest.damaged) progress_.note("warning: " + damage);
+    for (const std::string& damage : newest.damaged) fmt::print(stderr, "warning: {}\n", damage);
     if (!newest.reader)
       throw InputError(
-          fmt::format("{} holds no checkpoint to resume from; run without --resume", path_.string()));
+          fmt::format("{} holds no checkpoint to resume from; start anew with --force", path_.string()));
     reader_.emplace(std::move(*newest.reader));
     return reader_->at().time;
   }
@@ -157,13 +207,14 @@ class Run {
   }
 
   void conclude() {
-    nlohmann::ordered_json result = make_result(model_, clock_.time(), clock_.step(), wall_);
+    nlohmann::ordered_json result =
+        make_result(model_, clock_.time(), clock_.step(), wall_, operator_times());
     outputs_->report(result);
     directory_.write_result(result);
     if (case_.output.report) output::write_report(path_);
     if (options_.quiet) return;
     if (options_.verbose || model_.flow())
-      fmt::print("{}\n", output::operator_table(model_.operator_times(), wall_));
+      fmt::print("{}\n", output::operator_table(operator_times(), wall_));
     fmt::print("{}\n", output::verdict_sentence(result));
     fmt::print("results: {}\n", (path_ / "result.json").string());
     if (case_.output.report) fmt::print("report:  {}\n", (path_ / "report.html").string());
@@ -180,7 +231,9 @@ class Run {
   std::unique_ptr<RunOutputs> outputs_;
   std::optional<output::CheckpointReader> reader_;
   Clock clock_;
-  double wall_ = 0.0, wall_before_ = 0.0;
+  double wall_ = 0.0, wall_before_ = 0.0, busy_until_ = 0.0;
+  output::OperatorTime outputs_time_{"outputs", "histories, fields, slices, replay", 0.0, 0},
+      checkpoints_time_{"checkpoints", "the state to resume from", 0.0, 0};
 };
 
 void print_step(CoupledModel& model) {
@@ -202,7 +255,10 @@ int run_case(const Case& c, const RunOptions& options) {
   try {
     return run.advance_to_end();
   } catch (const DivergedError&) {
-    run.give_up();
+    run.give_up("diverged");
+    throw;
+  } catch (...) {
+    run.give_up("failed");
     throw;
   }
 }

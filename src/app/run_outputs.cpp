@@ -5,9 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "app/jet_source.hpp"
+#include "app/replay_header.hpp"
 #include "base/clock.hpp"
-#include "output/body_surface.hpp"
 
 namespace ejecta {
 namespace {
@@ -26,6 +25,22 @@ std::vector<Column> body_columns() {
   add("torque", "N m");
   add("contact_force", "N");
   return c;
+}
+
+std::vector<Vec3> points_of(const LineSpec& line) {
+  std::vector<Vec3> points;
+  for (int n = 0; n < line.points; ++n)
+    points.push_back(line.from + double(n) / (line.points - 1) * (line.to - line.from));
+  return points;
+}
+
+/// An output at an interval is due at the first step at or after each multiple of it (0: every step). Then
+/// `last`, the time it was written last, becomes `time`.
+bool due(double interval, double time, double& last) {
+  const double next = interval > 0.0 ? (std::floor(last / interval * (1.0 + 1e-9)) + 1.0) * interval : last;
+  if (time < next * (1.0 - 1e-9)) return false;
+  last = time;
+  return true;
 }
 
 /// A new history, or the one of the run that is resumed.
@@ -64,6 +79,15 @@ RunOutputs::RunOutputs(const Case& c, const CoupledModel& model, const output::R
       p.peak_time.assign(columns.size(), 0.0);
       probes_.push_back(std::move(p));
     }
+    columns.back() = {"position", "m"};
+    std::rotate(columns.begin(), columns.end() - 1, columns.end());
+    if (c.output.slices_interval > 0.0)
+      for (const LineSpec& spec : c.lines) {
+        Line line{
+            points_of(spec), {}, open_history(directory, "line-" + spec.name, provenance, columns, resume)};
+        for (const Vec3& x : line.points) line.position.push_back((x - spec.from).norm());
+        lines_.push_back(std::move(line));
+      }
   } else {
     energy_ = open_history(
         directory, "ledger", provenance,
@@ -81,7 +105,7 @@ RunOutputs::RunOutputs(const Case& c, const CoupledModel& model, const output::R
       slices_.push_back(open_series(directory, "slice-" + s.name, resume));
       if (!writer_) writer_.emplace(model.grid());
     }
-  header_ = replay_header();
+  header_ = replay_header(c, model);
   if (bodies_series_) bodies_writer_.emplace(header_.bodies);
   if (c.output.report) {
     replay_interval_ = c.output.slices_interval > 0.0 ? c.output.slices_interval : c.run.end_time / 200.0;
@@ -90,47 +114,6 @@ RunOutputs::RunOutputs(const Case& c, const CoupledModel& model, const output::R
                   : std::make_unique<output::ReplayFile>(directory.replay(), header_);
     for (const auto& raster : header_.rasters) samplers_.emplace_back(model.grid(), raster);
   }
-}
-
-output::ReplayHeader RunOutputs::replay_header() const {
-  output::ReplayHeader h;
-  const Grid& grid = model_.grid();
-  if (model_.flow()) {
-    h.domain = {grid.lower(), grid.upper()};
-    const bool flat = !grid.active(1);
-    output::SliceRaster r;
-    r.name = "side";
-    r.axis = grid.active(2) ? 1 : 2;
-    const int across = r.axis == 1 ? 2 : 1;
-    r.position = flat ? grid.axis(1).centre[0] : r.axis == 2 ? grid.axis(2).centre[0] : case_.jet.nozzle.y();
-    if (!flat && (r.position < grid.lower()[r.axis] || r.position > grid.upper()[r.axis]))
-      r.position = 0.5 * (grid.lower()[r.axis] + grid.upper()[r.axis]);
-    r.mirror_x = grid.axisymmetric() || case_.boundary[0].type == BoundaryType::symmetry;
-    r.lower = {r.mirror_x ? -grid.upper().x() : grid.lower().x(), grid.lower()[across]};
-    r.upper = {grid.upper().x(), grid.upper()[across]};
-    const double width = r.upper[0] - r.lower[0], height = r.upper[1] - r.lower[1];
-    const double pixel = std::sqrt(width * height / 24000.0);
-    r.pixels = {std::clamp(int(width / pixel), 8, 600), std::clamp(int(height / pixel), 8, 600)};
-    h.rasters.push_back(r);
-  }
-  for (const Body& b : model_.particles().bodies())
-    h.bodies.push_back(output::make_body_surface(b.name, b.shape.surface(0.02 * b.shape.bounding_radius())));
-  if (model_.splitter())
-    h.plates.push_back({"splitter", model_.splitter()->edge(), Vec3(1, 0, 0), Vec3(0, 1, 0),
-                        case_.splitter.length, 0.08, case_.splitter.thickness});
-  if (model_.flow() && has_jet(case_)) {
-    h.nozzles.push_back({case_.jet.nozzle, Vec3(0, 0, 1), case_.valve.orifice_diameter});
-    h.valve_open.push_back({case_.valve.opens_at, case_.valve.opens_at + case_.valve.duration});
-    for (double t : case_.valve.more_pulses) h.valve_open.push_back({t, t + case_.valve.duration});
-  }
-  h.undisturbed = model_.undisturbed();
-  return h;
-}
-
-bool RunOutputs::due(double interval, double time, double& last) const {
-  if (time < last + interval * (1.0 - 1e-9)) return false;
-  last = interval > 0.0 ? std::floor(time / interval * (1.0 + 1e-9)) * interval : time;
-  return true;
 }
 
 void RunOutputs::add_events(Clock& clock, double end) const {
@@ -143,7 +126,12 @@ void RunOutputs::observe(double time, std::int64_t) {
   if (due(case_.output.history_interval, time, last_history_)) write_histories(time);
   if (case_.output.fields_interval > 0.0 && due(case_.output.fields_interval, time, last_fields_))
     write_fields(time);
-  if (replay_ && due(replay_interval_, time, last_slices_)) write_replay(time);
+  if (case_.output.slices_interval > 0.0 && model_.air() &&
+      due(case_.output.slices_interval, time, last_slices_)) {
+    write_slices(time);
+    write_lines(time);
+  }
+  if (replay_ && due(replay_interval_, time, last_replay_)) write_replay(time);
 }
 
 void RunOutputs::update_probes(double time) {
@@ -196,10 +184,20 @@ void RunOutputs::write_histories(double time) {
   }
 }
 
+std::vector<output::CellField> RunOutputs::written_fields() const {
+  std::vector<output::CellField> fields = model_.flow()->fields();
+  const std::vector<std::string>& chosen = case_.output.fields;
+  if (!chosen.empty())
+    std::erase_if(fields, [&](const output::CellField& f) {
+      return std::find(chosen.begin(), chosen.end(), f.name) == chosen.end();
+    });
+  return fields;
+}
+
 void RunOutputs::write_fields(double time) {
   if (air_ && model_.air()) {
     const auto path = air_->next(".vtr");
-    writer_->write(path, time, model_.flow()->fields());
+    writer_->write(path, time, written_fields());
     air_->add(time, path);
   }
   if (bodies_series_) {
@@ -235,18 +233,31 @@ void RunOutputs::write_replay(double time) {
       frame.slices.push_back(std::move(slice));
     }
   replay_->add(frame);
-  if (!model_.air()) return;
+}
+
+void RunOutputs::write_slices(double time) {
   for (std::size_t s = 0; s < slices_.size(); ++s) {
     const SliceSpec& spec = case_.slices[s];
     const auto path = slices_[s].next(".vtr");
-    writer_->write(path, time, model_.flow()->fields(),
+    writer_->write(path, time, written_fields(),
                    output::slice_range(model_.grid(), spec.axis, spec.position));
     slices_[s].add(time, path);
   }
 }
 
+void RunOutputs::write_lines(double time) {
+  for (Line& line : lines_) {
+    std::vector<double> row(line.file->columns().size());
+    for (std::size_t n = 0; n < line.points.size(); ++n) {
+      row[0] = line.position[n];
+      model_.flow()->sample(line.points[n], std::span(row).subspan(1));
+      line.file->add(time, row);
+    }
+  }
+}
+
 void RunOutputs::finish(double time) {
-  if (time > last_history_ && case_.output.history_interval > 0.0) write_histories(time);
+  if (time > last_history_) write_histories(time);
 }
 
 void RunOutputs::report(nlohmann::ordered_json& result) const {
@@ -264,18 +275,16 @@ void RunOutputs::report(nlohmann::ordered_json& result) const {
   std::vector<double> values(quantities.size());
   for (const LineSpec& line : case_.lines) {
     auto& out = result["lines"][line.name];
-    for (int n = 0; n < line.points; ++n) {
-      const double share = line.points > 1 ? double(n) / (line.points - 1) : 0.0;
-      const Vec3 x = line.from + share * (line.to - line.from);
+    for (const Vec3& x : points_of(line)) {
       model_.flow()->sample(x, values);
-      out["position_m"].push_back(share * (line.to - line.from).norm());
+      out["position_m"].push_back((x - line.from).norm());
       for (std::size_t q = 0; q < values.size(); ++q) out[quantities[q].first].push_back(values[q]);
     }
   }
 }
 
 std::vector<double> RunOutputs::state() const {
-  std::vector<double> s{last_history_, last_fields_, last_slices_, last_probe_time_};
+  std::vector<double> s{last_history_, last_fields_, last_slices_, last_replay_, last_probe_time_};
   for (const Probe& p : probes_) {
     s.push_back(p.transducer);
     for (const auto* list : {&p.values, &p.peak, &p.peak_time}) s.insert(s.end(), list->begin(), list->end());
@@ -284,8 +293,9 @@ std::vector<double> RunOutputs::state() const {
 }
 
 void RunOutputs::restore(const std::vector<double>& s) {
-  last_history_ = s.at(0), last_fields_ = s.at(1), last_slices_ = s.at(2), last_probe_time_ = s.at(3);
-  std::size_t at = 4;
+  last_history_ = s.at(0), last_fields_ = s.at(1), last_slices_ = s.at(2), last_replay_ = s.at(3);
+  last_probe_time_ = s.at(4);
+  std::size_t at = 5;
   for (Probe& p : probes_) {
     p.transducer = s.at(at++);
     for (auto* list : {&p.values, &p.peak, &p.peak_time})

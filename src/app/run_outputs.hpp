@@ -26,7 +26,7 @@ class RunOutputs {
   void observe(double time, std::int64_t step);
   /// Output times the clock must land on.
   void add_events(class Clock& clock, double end) const;
-  /// Writes the last state whatever the intervals.
+  /// The last row of the histories, whatever their interval.
   void finish(double time);
   /// Greatest value each probe saw of each quantity, with its time; last values; lines: for result.json.
   void report(nlohmann::ordered_json& result) const;
@@ -41,18 +41,25 @@ class RunOutputs {
     double transducer = 0.0;
     std::unique_ptr<output::HistoryFile> file;
   };
-  bool due(double interval, double time, double& last) const;
+  struct Line {
+    std::vector<Vec3> points;
+    std::vector<double> position;  ///< m, from its first end
+    std::unique_ptr<output::HistoryFile> file;
+  };
   void write_histories(double time);
   void write_fields(double time);
+  void write_slices(double time);
+  void write_lines(double time);
   void write_replay(double time);
   void update_probes(double time);
-  output::ReplayHeader replay_header() const;
+  std::vector<output::CellField> written_fields() const;
 
   const Case& case_;
   const CoupledModel& model_;
   output::RunDirectory directory_;
   std::vector<std::unique_ptr<output::HistoryFile>> bodies_;
   std::vector<Probe> probes_;
+  std::vector<Line> lines_;
   std::unique_ptr<output::HistoryFile> energy_;
   std::optional<output::PvdSeries> air_, bodies_series_;
   std::vector<output::PvdSeries> slices_;
@@ -61,8 +68,9 @@ class RunOutputs {
   std::unique_ptr<output::ReplayFile> replay_;
   output::ReplayHeader header_;
   std::vector<output::SliceSampler> samplers_;
-  double last_history_ = -1e300, last_fields_ = -1e300, last_slices_ = -1e300, last_probe_time_ = 0.0;
-  double replay_interval_ = 0.0;
+  // When each was last written, s.
+  double last_history_ = -1e300, last_fields_ = -1e300, last_slices_ = -1e300, last_replay_ = -1e300;
+  double last_probe_time_ = 0.0, replay_interval_ = 0.0;
 };
 
 }  // namespace ejecta

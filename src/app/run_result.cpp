@@ -142,7 +142,8 @@ std::vector<output::Assumption> assumptions_of(const Case& c) {
   return a;
 }
 
-Json make_result(const CoupledModel& m, double time, std::int64_t steps, double wall_time) {
+Json make_result(const CoupledModel& m, double time, std::int64_t steps, double wall_time,
+                 std::span<const output::OperatorTime> operators) {
   const Case& c = m.config();
   Json r;
   r["title"] = c.run.title;
@@ -173,7 +174,7 @@ Json make_result(const CoupledModel& m, double time, std::int64_t steps, double 
     r["ledger"]["dissipated_J"] = e.dissipated;
   }
   add_errors(m, time, r);
-  for (const auto& op : m.operator_times())
+  for (const output::OperatorTime& op : operators)
     r["operators"].push_back(
         {{"name", op.name}, {"equation", op.equation}, {"seconds", op.seconds}, {"calls", op.calls}});
   for (const auto& a : assumptions_of(c))

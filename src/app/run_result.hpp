@@ -1,13 +1,14 @@
 #pragma once
 #include <nlohmann/json.hpp>
+#include <span>
 
 #include "app/coupled_model.hpp"
 
 namespace ejecta {
 
-/// result.json of a run as it stands (docs/files.md).
+/// result.json of a run as it stands (docs/files.md). `operators`: those of the step and what else took time.
 nlohmann::ordered_json make_result(const CoupledModel& model, double time, std::int64_t steps,
-                                   double wall_time);
+                                   double wall_time, std::span<const output::OperatorTime> operators);
 
 /// What the run takes for granted that the user should know.
 std::vector<output::Assumption> assumptions_of(const Case& c);

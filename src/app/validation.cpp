@@ -10,6 +10,8 @@
 #include "base/error.hpp"
 #include "base/text.hpp"
 #include "case/load.hpp"
+#include "output/output_file.hpp"
+#include "output/report.hpp"
 
 namespace ejecta {
 namespace {
@@ -119,16 +121,34 @@ bool Validation::pass() const {
 
 namespace {
 
+/// The comparisons become part of the run's result and of its report.
+void record(const std::filesystem::path& run_directory, const std::vector<Comparison>& comparisons) {
+  const std::filesystem::path file = run_directory / "result.json";
+  auto result = nlohmann::ordered_json::parse(output::read_file(file));
+  result["expectations"] = nlohmann::ordered_json::array();
+  for (const Comparison& c : comparisons)
+    result["expectations"].push_back({{"quantity", c.quantity},
+                                      {"computed", c.computed},
+                                      {"reference", c.reference},
+                                      {"source", c.source},
+                                      {"error", c.error},
+                                      {"pass", c.pass}});
+  output::write_file(file, result.dump(2) + '\n');
+  if (std::filesystem::exists(run_directory / "report.html")) output::write_report(run_directory);
+}
+
 void run_and_compare(const std::string& path, const RunOptions& options, const Runner& run, Validation& v) {
   const Case c = load_case(path);
   if (c.expects.empty()) throw InputError(fmt::format("{}: no [[expect]], nothing to compare with", path));
   const bool series = !c.convergence.factors.empty();
   const std::vector<double> factors = series ? c.convergence.factors : std::vector<double>{1.0};
   std::vector<nlohmann::json> results;
+  std::filesystem::path last;
   for (double factor : factors) {
     RunOptions one = options;
     const std::string level = series ? fmt::format("-x{:g}", factor) : "";
-    one.out = (std::filesystem::path(options.out) / fmt::format("{}{}.run", v.name, level)).string();
+    last = std::filesystem::path(options.out) / fmt::format("{}{}.run", v.name, level);
+    one.out = last.string();
     v.exit_code = run(series ? refined(c, factor) : c, one);
     if (v.exit_code != exit_done) return;
     results.push_back(read_result(one.out));
@@ -136,6 +156,7 @@ void run_and_compare(const std::string& path, const RunOptions& options, const R
   if (series) results.back() = with_orders(results, factors);
   for (const ExpectSpec& e : c.expects)
     v.comparisons.push_back(series ? compare_series(e, results) : compare(e, results.front()));
+  record(last, v.comparisons);
 }
 
 }  // namespace

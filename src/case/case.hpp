@@ -72,7 +72,6 @@ struct FlowSpec {
   bool round_jet_correction = true;        ///< Pope 1978, k-epsilon only
   bool compressibility_correction = true;  ///< Sarkar 1991; compressible solvers only
   int corrections = 2;                     ///< pressure corrections a step, >= 2
-  double forcing_tolerance = 0.0;          ///< leak through bodies at which corrections stop early (0: never)
   /// Uniform acceleration of the fluid besides gravity (drives a channel), m/s2
   Vec3 body_force{0, 0, 0};
 };
@@ -127,11 +126,9 @@ struct InitialSpec {
 
 /// [valve]
 struct ValveSpec {
-  double supply_pressure = 801325.0;   ///< Pa absolute (the file says gauge or absolute)
-  double supply_temperature = 0.0;     ///< K, 0: ambient
-  double orifice_diameter = 1.8e-3;    ///< m (assumption: design.md section 6)
-  double nozzle_length = 0.0;          ///< m, straight
-  double nozzle_inlet_diameter = 0.0;  ///< m, 0: straight
+  double supply_pressure = 801325.0;  ///< Pa absolute (the file says gauge or absolute)
+  double supply_temperature = 0.0;    ///< K, 0: ambient
+  double orifice_diameter = 1.8e-3;   ///< m (assumption: design.md section 6)
   double discharge_coefficient = 1.0;
   double opens_at = 0.0;    ///< s, the command
   double duration = 8e-3;   ///< s, length of the command

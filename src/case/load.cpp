@@ -2,12 +2,15 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <memory>
+#include <set>
 
 #include "base/error.hpp"
+#include "case/findings.hpp"
 #include "case/node_path.hpp"
 #include "case/override.hpp"
 #include "case/problem.hpp"
@@ -55,6 +58,16 @@ void throw_if_any(const std::vector<Problem>& problems) {
   if (!problems.empty()) throw InputError(render(problems));
 }
 
+/// Nobody knows what a whole section that could not be read was meant to say.
+bool concerns_a_section(const Problem& p) { return p.key.find('.') == std::string::npos; }
+
+std::set<std::string> sections_of(const std::vector<Problem>& problems) {
+  std::set<std::string> names;
+  for (const Problem& p : problems)
+    for (const std::string& key : {p.key, p.nearest}) names.insert(section_of(key));
+  return names;
+}
+
 /// What follows from other keys.
 void fill_in(Case& c) {
   if (c.fluid.ideal_gas && c.fluid.density == 0.0)
@@ -75,7 +88,8 @@ void fill_in(Case& c) {
 
 }  // namespace
 
-Case parse_case(const std::string& text, const std::string& name, const std::vector<std::string>& overrides) {
+Case parse_case(const std::string& text, const std::string& name, const std::vector<std::string>& overrides,
+                std::vector<Problem>* warnings) {
   check_text(text, name);
   std::vector<Problem> problems;
   Node root = parse_toml(std::make_shared<Source>(Source{name, text}), problems);
@@ -86,20 +100,32 @@ Case parse_case(const std::string& text, const std::string& name, const std::vec
   c.path = name;
   read_case(root, c, problems);
   if (syntax_errors) std::erase_if(problems, [](const Problem& p) { return p.what == "missing"; });
-  throw_if_any(problems);
 
   fill_in(c);
-  for (Problem& p : check_sense(c)) {
-    if (p.severity != Severity::error) continue;
-    p.place = locate(root, p.key);
-    problems.push_back(std::move(p));
-  }
+  if (!syntax_errors && std::none_of(problems.begin(), problems.end(), concerns_a_section))
+    for (Problem& p : check_sense(c, sections_of(problems))) {
+      p.place = locate(root, p.key);
+      if (p.severity == Severity::error) problems.push_back(std::move(p));
+      else if (warnings) warnings->push_back(std::move(p));
+    }
   throw_if_any(problems);
   return c;
 }
 
-Case load_case(const std::string& path, const std::vector<std::string>& overrides) {
-  return parse_case(read_file(path), path, overrides);
+Case with_absolute_files(Case c) {
+  const auto resolve = [&](std::string& file) {
+    if (!file.empty()) file = std::filesystem::absolute(beside_case(c, file)).lexically_normal().string();
+  };
+  resolve(c.valve.trace);
+  resolve(c.jet.source_case);
+  for (BodySpec& b : c.bodies) resolve(b.file);
+  for (WallSpec& w : c.walls) resolve(w.file);
+  return c;
+}
+
+Case load_case(const std::string& path, const std::vector<std::string>& overrides,
+               std::vector<Problem>* warnings) {
+  return parse_case(read_file(path), path, overrides, warnings);
 }
 
 }  // namespace ejecta

@@ -49,18 +49,15 @@ std::vector<Key> keys(FluidSpec& s) {
 }
 
 std::vector<Key> keys(FlowSpec& s) {
-  return {
-      {"solver", choice(s.solver), none, anything, "How the fluid is computed", ""},
-      {"turbulence", choice(s.turbulence), none, anything, "Turbulence model", ""},
-      {"round_jet_correction", &s.round_jet_correction, none, anything,
-       "Vortex-stretching term that cures the round-jet anomaly of k-epsilon", "Pope 1978"},
-      {"compressibility_correction", &s.compressibility_correction, none, anything,
-       "Dilatation dissipation in compressible solvers", "Sarkar 1991"},
-      {"corrections", &s.corrections, none, {2, 20}, "Pressure corrections a step", "Issa 1986"},
-      {"forcing_tolerance", &s.forcing_tolerance, none, fraction,
-       "Leak through bodies, relative to their speed, at which corrections stop early; 0: never early", ""},
-      {"body_force", &s.body_force, acceleration, anything,
-       "Uniform acceleration of the fluid besides gravity (drives a channel)", ""}};
+  return {{"solver", choice(s.solver), none, anything, "How the fluid is computed", ""},
+          {"turbulence", choice(s.turbulence), none, anything, "Turbulence model", ""},
+          {"round_jet_correction", &s.round_jet_correction, none, anything,
+           "Vortex-stretching term that cures the round-jet anomaly of k-epsilon", "Pope 1978"},
+          {"compressibility_correction", &s.compressibility_correction, none, anything,
+           "Dilatation dissipation in compressible solvers", "Sarkar 1991"},
+          {"corrections", &s.corrections, none, {2, 20}, "Pressure corrections a step", "Issa 1986"},
+          {"body_force", &s.body_force, acceleration, anything,
+           "Uniform acceleration of the fluid besides gravity (drives a channel)", ""}};
 }
 
 std::vector<Key> keys(GridSpec& s) {
@@ -72,13 +69,13 @@ std::vector<Key> keys(AxisSpec& s) {
            .slot = &s.points,
            .dimension = length,
            .help = "Ends of the blocks along this axis, ascending; one more than blocks",
-           .unset = "none: needed unless flow.solver is none",
+           .unset = "needed with a flow",
            .example = R"(["-50 mm", "0 mm", "50 mm"])"},
           {.name = "cells",
            .slot = &s.cells,
            .bounds = {1, 100000},
            .help = "Cells of each block (a bare number for one block)",
-           .unset = "none: needed unless flow.solver is none",
+           .unset = "needed with a flow",
            .example = "[40, 40]"},
           {.name = "grading",
            .slot = &s.grading,

@@ -75,11 +75,14 @@ std::vector<Key> keys(OutputSpec& s) {
       {"fields_interval", &s.fields_interval, time, not_negative, "Between whole fields (.vtr); 0: none", ""},
       {"history_interval", &s.history_interval, time, not_negative,
        "Between rows of history/*.csv; 0: every step", ""},
-      {"slices_interval", &s.slices_interval, time, not_negative, "Between slices; 0: none", ""},
+      {"slices_interval", &s.slices_interval, time, not_negative, "Between slices and between lines; 0: none",
+       ""},
       {"report", &s.report, none, anything, "Write report.html", ""},
       {.name = "fields",
        .slot = &s.fields,
-       .help = "Names of the fields to write",
+       .help =
+           "Fields in fields/*.vtr: of velocity, pressure, density, k, epsilon, omega, eddy_viscosity those "
+           "the flow has",
        .unset = "all",
        .example = R"(["velocity", "pressure"])"}};
 }

@@ -1,22 +1,49 @@
 #include "case/sense.hpp"
 
 #include <algorithm>
+#include <array>
 
 #include "case/findings.hpp"
 
 namespace ejecta {
+namespace {
 
-std::vector<Problem> check_sense(const Case& c) {
+struct Part {
+  void (*look)(const Case&, Findings&);
+  std::vector<std::string> sections;  ///< what it reads
+};
+
+const std::array<Part, 11> parts{{
+    {sense_run, {"run", "environment", "fluid", "flow", "body", "splitter"}},
+    {sense_grid, {"grid"}},
+    {sense_boundaries, {"boundary", "environment", "flow", "grid"}},
+    {sense_materials, {"material", "material_pair", "contact"}},
+    {sense_shapes, {"body", "material", "launch", "run"}},
+    {sense_walls, {"wall", "material"}},
+    {sense_sorter,
+     {"run", "environment", "flow", "grid", "boundary", "valve", "jet", "launch", "splitter", "body"}},
+    {sense_expectations, {"expect", "convergence", "exact", "flow"}},
+    {sense_places, {"grid", "flow", "body", "launch"}},
+    {sense_overlaps, {"body", "launch"}},
+    {sense_records, {"grid", "flow", "probe", "line", "slice"}},
+}};
+
+}  // namespace
+
+std::vector<Problem> check_sense(const Case& c, std::set<std::string> unsound) {
   Findings found;
-  for (auto* part : {sense_run, sense_grid, sense_boundaries, sense_materials, sense_shapes, sense_walls,
-                     sense_sorter, sense_expectations})
-    part(c, found);
-  // Places make sense only on a sound grid and with sound shapes.
-  const bool sound = std::none_of(found.list.begin(), found.list.end(),
-                                  [](const Problem& p) { return p.severity == Severity::error; });
-  if (sound)
-    for (auto* part : {sense_places, sense_overlaps, sense_records}) part(c, found);
+  for (const Part& part : parts) {
+    if (std::any_of(part.sections.begin(), part.sections.end(),
+                    [&](const std::string& s) { return unsound.contains(s); }))
+      continue;
+    const std::size_t before = found.list.size();
+    part.look(c, found);
+    for (std::size_t n = before; n < found.list.size(); ++n)
+      if (found.list[n].severity == Severity::error) unsound.insert(section_of(found.list[n].key));
+  }
   return found.list;
 }
+
+std::string section_of(const std::string& key) { return key.substr(0, key.find('.')); }
 
 }  // namespace ejecta

@@ -8,24 +8,12 @@
 #include "base/units.hpp"
 #include "case/extent.hpp"
 #include "case/findings.hpp"
+#include "case/names.hpp"
 #include "case/words.hpp"
 
 /// Materials, shapes, walls.
 namespace ejecta {
 namespace {
-
-/// Reports names that occur twice in a list of structs with a `name`.
-template <class List>
-void refuse_twins(const List& list, const std::string& section, Findings& found) {
-  for (std::size_t i = 0; i < list.size(); ++i)
-    for (std::size_t j = 0; j < i; ++j)
-      if (list[i].name == list[j].name) {
-        found.error(fmt::format("{}.{}.name", section, i),
-                    fmt::format("the name \"{}\" is taken already", list[i].name),
-                    "a name of its own for each", fmt::format("name = \"{}-2\"", list[i].name));
-        break;
-      }
-}
 
 void require_material(const Case& c, const std::string& key, const std::string& name, Findings& found) {
   if (name.empty()) return;
@@ -108,7 +96,7 @@ std::string beside_case(const Case& c, const std::string& file) {
 }
 
 void sense_materials(const Case& c, Findings& found) {
-  refuse_twins(c.materials, "material", found);
+  check_names(c.materials, "material", found);
   for (std::size_t n = 0; n < c.material_pairs.size(); ++n) {
     require_material(c, fmt::format("material_pair.{}.a", n), c.material_pairs[n].a, found);
     require_material(c, fmt::format("material_pair.{}.b", n), c.material_pairs[n].b, found);
@@ -119,7 +107,7 @@ void sense_materials(const Case& c, Findings& found) {
 }
 
 void sense_shapes(const Case& c, Findings& found) {
-  refuse_twins(c.bodies, "body", found);
+  check_file_names(c.bodies, "body", found);
   for (std::size_t n = 0; n < c.bodies.size(); ++n) {
     const BodySpec& b = c.bodies[n];
     const std::string key = fmt::format("body.{}", n);
@@ -144,7 +132,7 @@ void sense_shapes(const Case& c, Findings& found) {
 }
 
 void sense_walls(const Case& c, Findings& found) {
-  refuse_twins(c.walls, "wall", found);
+  check_names(c.walls, "wall", found);
   for (std::size_t n = 0; n < c.walls.size(); ++n) {
     const WallSpec& w = c.walls[n];
     const std::string key = fmt::format("wall.{}", n);

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 
+#include "base/text.hpp"
 #include "base/units.hpp"
 #include "case/extent.hpp"
 #include "case/findings.hpp"
+#include "case/names.hpp"
 #include "case/schema.hpp"
 
 /// Where bodies and instruments are, relative to the grid.
@@ -57,18 +59,22 @@ void check_place(const Case& c, const Box& box, std::size_t n, Findings& found) 
                   fmt::format("at least {} for results that do not depend on the grid", cells_advised));
 }
 
-template <class List>
-void refuse_unnamed_twins(const List& list, const std::string& section, Findings& found) {
-  for (std::size_t i = 0; i < list.size(); ++i) {
-    const std::string key = fmt::format("{}.{}.name", section, i);
-    if (list[i].name.empty() || list[i].name.find_first_of("/\\") != std::string::npos)
-      found.error(key, "the name becomes part of a file name", "a name without slashes",
-                  "name = \"at-75mm\"");
-    for (std::size_t j = 0; j < i; ++j)
-      if (list[i].name == list[j].name)
-        found.error(key, fmt::format("the name \"{}\" is taken already", list[i].name),
-                    "a name of its own for each");
-  }
+/// What the solver of the case can write.
+std::vector<std::string> field_names(const FlowSpec& flow) {
+  std::vector<std::string> names{"velocity", "pressure"};
+  if (flow.solver != FlowSolver::incompressible) names.push_back("density");
+  if (flow.turbulence != TurbulenceModel::laminar)
+    names.insert(names.end(), {"k", flow.turbulence == TurbulenceModel::k_epsilon ? "epsilon" : "omega",
+                               "eddy_viscosity"});
+  return names;
+}
+
+void check_fields(const Case& c, Findings& found) {
+  const std::vector<std::string> known = field_names(c.flow);
+  for (const std::string& name : c.output.fields)
+    if (std::find(known.begin(), known.end(), name) == known.end())
+      found.error("output.fields", fmt::format("this flow has no field \"{}\"", name),
+                  "some of " + joined(known), "fields = [\"velocity\", \"pressure\"]");
 }
 
 }  // namespace
@@ -80,9 +86,9 @@ void sense_places(const Case& c, Findings& found) {
 }
 
 void sense_records(const Case& c, Findings& found) {
-  refuse_unnamed_twins(c.probes, "probe", found);
-  refuse_unnamed_twins(c.lines, "line", found);
-  refuse_unnamed_twins(c.slices, "slice", found);
+  check_file_names(c.probes, "probe", found);
+  check_file_names(c.lines, "line", found);
+  check_file_names(c.slices, "slice", found);
   const std::optional<Box> box = grid_box(c);
   if (c.flow.solver == FlowSolver::none) {
     for (const auto& [count, section] :
@@ -90,6 +96,7 @@ void sense_records(const Case& c, Findings& found) {
       if (count > 0) found.error(section, "without a flow there is nothing to record", "a flow solver");
     return;
   }
+  check_fields(c, found);
   if (!box) return;
   const auto inside = [&](const std::string& key, const Vec3& p, const char* what) {
     if (!box->contains(p))

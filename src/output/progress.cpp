@@ -89,6 +89,7 @@ void Progress::update(const ProgressState& s) {
   const double t = now();
   if (!started_) {
     sample_ = {t, s.time, s.step};
+    if (!options_.terminal) last_shown_ = t;  // a line of the first step says nothing yet
     started_ = true;
   }
   measure(s, t);
@@ -97,9 +98,11 @@ void Progress::update(const ProgressState& s) {
     last_written_ = t;
   }
   if (options_.verbosity == Verbosity::quiet) return;
-  if (t - last_shown_ < (options_.terminal ? kBarInterval : options_.line_interval)) return;
+  const bool every_step = options_.verbosity == Verbosity::verbose;
+  const double interval = every_step ? 0.0 : options_.terminal ? kBarInterval : options_.line_interval;
+  if (t - last_shown_ < interval) return;
   last_shown_ = t;
-  if (options_.terminal) draw_bar(s);
+  if (options_.terminal && !every_step) draw_bar(s);
   else out_ << status(s) << std::endl;
 }
 
@@ -118,10 +121,6 @@ void Progress::note(const std::string& line) {
   if (bar_shown_) out_ << kClearLine;
   bar_shown_ = false;
   out_ << line << std::endl;
-}
-
-void Progress::detail(const std::string& line) {
-  if (options_.verbosity == Verbosity::verbose) note(line);
 }
 
 void Progress::write_file(const ProgressState& s, const std::string& state) const {

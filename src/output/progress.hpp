@@ -35,19 +35,17 @@ struct ProgressState {
   std::int64_t cells = 0;
 };
 
-/// Tells how far a run is: a bar on a terminal (ten times a second), else a line every few seconds, and
-/// progress.json every second, {"state", "time_s", "end_time_s", "step", "courant", "cell_steps_per_s",
-/// "wall_time_s", "eta_s"}. Cheap to call every step.
+/// Tells how far a run is: a bar on a terminal (ten times a second), else a line every few seconds, when
+/// verbose a line every step; and progress.json every second, {"state", "time_s", "end_time_s", "step",
+/// "courant", "cell_steps_per_s", "wall_time_s", "eta_s"}. Cheap to call every step.
 class Progress {
  public:
   Progress(std::ostream& out, ProgressOptions options);
   void update(const ProgressState& state);
   /// Ends the bar; `state` is "done", "stopped", "diverged" or "failed" and goes to progress.json.
   void finish(const ProgressState& last, const std::string& state);
-  /// A line of its own that does not disturb the bar (normal and verbose).
+  /// A line of its own that does not disturb the bar; not when quiet.
   void note(const std::string& line);
-  /// Likewise, verbose only.
-  void detail(const std::string& line);
 
  private:
   double now() const;

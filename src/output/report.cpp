@@ -23,7 +23,8 @@ namespace {
 
 using nlohmann::ordered_json;
 
-/// Rows of a history that the page holds at most; longer ones are thinned evenly.
+/// Rows of a history that the page holds at most; longer ones are thinned evenly. Rows that share a time (the
+/// points of a line) stay together.
 constexpr std::size_t kMostRows = 4000;
 constexpr std::string_view kPlaceholder = "\"EJECTA_DATA\"";
 
@@ -36,22 +37,34 @@ ordered_json json_file(const fs::path& path) {
   }
 }
 
+/// Every `stride`-th moment's rows; the first column is time.
+std::vector<std::size_t> rows_shown(const std::vector<double>& time, std::size_t stride) {
+  std::vector<std::size_t> rows;
+  std::size_t moment = 0;
+  for (std::size_t r = 0; r < time.size(); ++r) {
+    if (r > 0 && time[r] != time[r - 1]) ++moment;
+    if (moment % stride == 0) rows.push_back(r);
+  }
+  return rows;
+}
+
 /// Columns as base64 of float32.
 ordered_json history_json(const fs::path& path) {
   const HistoryTable table = read_history(path);
   ordered_json json{{"columns", ordered_json::array()}, {"rows", 0}, {"data", ordered_json::array()}};
-  const std::size_t rows = table.values.empty() ? 0 : table.values.front().size();
-  const std::size_t stride = (rows + kMostRows - 1) / kMostRows;
+  const std::vector<double>& time = table.values.at(0);
+  const std::size_t stride = std::max<std::size_t>(1, (time.size() + kMostRows - 1) / kMostRows);
+  const std::vector<std::size_t> rows = rows_shown(time, stride);
   std::vector<float> column;
   for (std::size_t c = 0; c < table.columns.size(); ++c) {
     column.clear();
-    for (std::size_t r = 0; r < rows; r += stride) column.push_back(static_cast<float>(table.values[c][r]));
+    for (const std::size_t r : rows) column.push_back(static_cast<float>(table.values[c][r]));
     std::string data;
     append_base64(data, column.data(), column.size() * sizeof(float));
     json["columns"].push_back({{"name", table.columns[c].name}, {"unit", table.columns[c].unit}});
     json["data"].push_back(std::move(data));
   }
-  json["rows"] = column.size();
+  json["rows"] = rows.size();
   json["stride"] = stride;
   return json;
 }

@@ -15,6 +15,7 @@ struct PackPlane {
   ConstFieldView from;
   float* to;
   int components, component;
+  double scale, offset;
   Range3 r;
   void operator()(int plane) const {
     const std::ptrdiff_t nx = r.i1 - r.i0, ny = r.j1 - r.j0;
@@ -22,15 +23,16 @@ struct PackPlane {
     for (int j = r.j0; j < r.j1; ++j) {
       const Real* row = from.row(j, k) + r.i0;
       float* out = to + ((plane * ny + (j - r.j0)) * nx) * components + component;
-      for (std::ptrdiff_t i = 0; i < nx; ++i) out[i * components] = static_cast<float>(row[i]);
+      for (std::ptrdiff_t i = 0; i < nx; ++i)
+        out[i * components] = static_cast<float>(scale * row[i] + offset);
     }
   }
 };
 
 }  // namespace
 
-CellField scalar_field(std::string name, ConstFieldView values) {
-  return {std::move(name), {values, {}, {}}, 1};
+CellField scalar_field(std::string name, ConstFieldView values, double scale, double offset) {
+  return {std::move(name), {values, {}, {}}, 1, scale, offset};
 }
 
 CellField vector_field(std::string name, ConstFieldView x, ConstFieldView y, ConstFieldView z) {
@@ -62,8 +64,8 @@ void RectilinearWriter::write(const std::filesystem::path& path, double time,
   for (const CellField& f : fields) {
     float* to = file_.float_array(f.name, f.components, cells * static_cast<std::size_t>(f.components));
     for (int c = 0; c < f.components; ++c)
-      for_each_index(r.k1 - r.k0,
-                     PackPlane{f.component[static_cast<std::size_t>(c)], to, f.components, c, r});
+      for_each_index(r.k1 - r.k0, PackPlane{f.component[static_cast<std::size_t>(c)], to, f.components, c,
+                                            f.scale, f.offset, r});
   }
   file_.text("</CellData>\n</Piece>\n");
   file_.write(path);

@@ -19,6 +19,46 @@ solver = "none"
 name = "ball"
 diameter = "10 mm"
 """
+STREAM = """[run]
+end_time = "3 ms"
+time_step = "0.5 ms"
+[flow]
+solver = "incompressible"
+[grid.x]
+points = ["0 mm", "20 mm"]
+cells = [10]
+[grid.y]
+points = ["0 mm", "1 mm"]
+cells = [1]
+[grid.z]
+points = ["0 mm", "20 mm"]
+cells = [10]
+[boundary.x_min]
+type = "velocity"
+velocity = ["2 m/s", "0 m/s", "0 m/s"]
+[boundary.x_max]
+type = "pressure-outlet"
+[boundary.z_min]
+type = "slip"
+[boundary.z_max]
+type = "slip"
+[[initial]]
+velocity = ["2 m/s", "0 m/s", "0 m/s"]
+[[line]]
+name = "along"
+from = ["1 mm", "0.5 mm", "10 mm"]
+to = ["19 mm", "0.5 mm", "10 mm"]
+points = 4
+[[slice]]
+name = "side"
+axis = "y"
+position = "0.5 mm"
+[output]
+slices_interval = "1 ms"
+fields_interval = "3 ms"
+fields = ["velocity"]
+report = false
+"""
 
 
 def ejecta(*arguments, **environment):
@@ -56,9 +96,19 @@ class CommandLine(unittest.TestCase):
         answer = ejecta("chekc")
         self.assertEqual(answer.returncode, 2)
         self.assertIn('nearest is "check"', answer.stderr)
-        self.assertEqual(ejecta().returncode, 2)
+        answer = ejecta()
+        self.assertEqual(answer.returncode, 2)
+        self.assertIn("ejecta new", answer.stderr)
         self.assertEqual(ejecta("run").returncode, 2)
-        self.assertEqual(ejecta("run", self.case(), "--thread", "2").returncode, 2)
+        answer = ejecta("run", self.case(), "--thread", "2")
+        self.assertEqual(answer.returncode, 2)
+        self.assertIn('no option "--thread", nearest is "--threads"', answer.stderr)
+        answer = ejecta("run", self.case(), "two.toml")
+        self.assertEqual(answer.returncode, 2)
+        self.assertIn('"two.toml" is one word too many', answer.stderr)
+        self.assertIn("ejecta run --help", answer.stderr)
+        self.assertEqual(ejecta("run", self.case(), "--resume", "--force").returncode, 2)
+        self.assertEqual(ejecta("report", "nowhere").returncode, 2)
         self.assertEqual(ejecta("run", self.case(), "--threads", "0").returncode, 2)
 
     def test_a_wrong_case_is_bad_input_with_the_line(self):
@@ -89,6 +139,13 @@ class CommandLine(unittest.TestCase):
         self.assertEqual(ejecta("explain", "no such thing").returncode, 2)
         json.loads(ejecta("explain", "--json-schema").stdout)
 
+    def test_every_shipped_case_passes_check(self):
+        source = pathlib.Path(__file__).parents[2]
+        cases = [str(p) for folder in ("cases", "verification", "validation") for p in (source / folder).rglob("*.toml")]
+        self.assertGreater(len(cases), 20)
+        answer = ejecta("check", *cases)
+        self.assertEqual(answer.returncode, 0, answer.stderr)
+
     def test_set_changes_a_key(self):
         self.assertIn("up to 2 ms", ejecta("check", self.case(), "--set", "run.end_time=2 ms").stdout)
         answer = ejecta("check", self.case(), "--set", "run.end_time=2")
@@ -100,9 +157,10 @@ class CommandLine(unittest.TestCase):
         store.mkdir()
         (store / "jet-1.h5").write_bytes(b"0" * 1000)
         (store / "kept").mkdir()
+        (store / "thesis.txt").write_text("not ours")
         self.assertIn("jet-1.h5", ejecta("cache", EJECTA_CACHE=str(store)).stdout)
-        self.assertIn("1 files removed", ejecta("cache", "--clear", EJECTA_CACHE=str(store)).stdout)
-        self.assertEqual([p.name for p in store.iterdir()], ["kept"])
+        self.assertIn("jets removed: 1", ejecta("cache", "--clear", EJECTA_CACHE=str(store)).stdout)
+        self.assertEqual(sorted(p.name for p in store.iterdir()), ["kept", "thesis.txt"])
 
     def test_validate_passes_and_fails_with_its_own_code(self):
         passing = BOUNCE + '[[expect]]\nquantity = "/steps"\nat_least = 1\n'
@@ -129,6 +187,64 @@ class CommandLine(unittest.TestCase):
         self.assertEqual(
             pathlib.Path("case.run/case.toml").read_text(), pathlib.Path("again.run/case.toml").read_text()
         )
+
+    def test_warnings_show_their_line_and_quiet_hides_them(self):
+        case = self.case(BOUNCE + 'release_at = "2 ms"\n')
+        answer = ejecta("run", case)
+        self.assertIn("case.toml:8: warning: body.0.release_at: the body is never released", answer.stderr)
+        self.assertEqual(ejecta("run", case, "--quiet", "--force").stderr, "")
+
+    def test_no_color_and_a_log_have_no_escapes(self):
+        for environment in ({}, {"NO_COLOR": "1"}):
+            answer = ejecta("run", self.case(), "--force", **environment)
+            self.assertNotIn("\x1b", answer.stdout + answer.stderr)
+
+    def test_verbose_is_a_line_every_step(self):
+        quiet, verbose = (ejecta("run", self.case(), "--force", *more).stderr.splitlines() for more in ([], ["-v"]))
+        steps = json.loads(pathlib.Path("case.run/result.json").read_text())["steps"]
+        self.assertGreaterEqual(len(verbose), steps)
+        self.assertLess(len(quiet), 6)
+
+    def test_lines_and_slices_are_recorded_at_the_slice_interval_also_without_a_report(self):
+        answer = ejecta("run", self.case(STREAM), "--quiet")
+        self.assertEqual(answer.returncode, 0, answer.stderr)
+        lines = pathlib.Path("case.run/history/line-along.csv").read_text().splitlines()
+        self.assertRegex(lines[0], r"^# ejecta \d")
+        rows = [line for line in lines if not line.startswith("#")]
+        self.assertEqual(
+            rows[0],
+            "time [s],position [m],velocity_x [m/s],velocity_y [m/s],velocity_z [m/s],pressure [Pa],total_pressure [Pa]",
+        )
+        values = [[float(cell) for cell in row.split(",")] for row in rows[1:]]
+        self.assertEqual([row[0] for row in values], [t * 1e-3 for t in range(4) for _ in range(4)])
+        for row, position in zip(values, [0, 6e-3, 12e-3, 18e-3] * 4):
+            self.assertAlmostEqual(row[1], position)
+            self.assertAlmostEqual(row[2], 2.0, places=5)
+        self.assertEqual(len(list(pathlib.Path("case.run/fields").glob("slice-side-*.vtr"))), 4)
+        fields = pathlib.Path("case.run/fields/air-000000.vtr").read_bytes()
+        self.assertIn(b'Name="velocity"', fields)
+        self.assertNotIn(b'Name="pressure"', fields)
+        self.assertFalse(pathlib.Path("case.run/replay.jsonl").exists())
+
+    def test_resume_refuses_another_case(self):
+        case = self.case(BOUNCE + "[checkpoint]\nevery_steps = 1\n")
+        self.assertEqual(ejecta("run", case, "--quiet").returncode, 0)
+        answer = ejecta("run", case, "--resume", "--set", "body.0.diameter=9 mm")
+        self.assertEqual(answer.returncode, 2)
+        self.assertIn("another case: body.0.diameter changed", answer.stderr)
+        self.assertEqual(ejecta("run", case, "--resume", "--set", "run.end_time=2 ms").returncode, 0)
+        self.assertEqual(json.loads(pathlib.Path("case.run/result.json").read_text())["simulated_time_s"], 0.002)
+
+    def test_a_printed_page_that_cannot_be_written_is_a_failure(self):
+        with open("/dev/full", "w") as full:
+            answer = subprocess.run([EJECTA, "explain"], stdout=full, stderr=subprocess.PIPE, text=True)
+        self.assertEqual(answer.returncode, 1)
+        self.assertIn("No space left", answer.stderr)
+
+    def test_validate_adds_the_comparison_to_the_result(self):
+        ejecta("validate", self.case(BOUNCE + '[[expect]]\nquantity = "/steps"\nat_least = 1\n'))
+        result = json.loads(pathlib.Path("validation.runs/case.run/result.json").read_text())
+        self.assertTrue(result["expectations"][0]["pass"])
 
 
 if __name__ == "__main__":

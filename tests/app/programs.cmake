@@ -5,3 +5,12 @@ set_tests_properties(app.cli PROPERTIES LABELS fast)
 add_test(NAME app.resume COMMAND ${Python3_EXECUTABLE} ${CMAKE_CURRENT_LIST_DIR}/resume_test.py $<TARGET_FILE:ejecta>
          ${CMAKE_CURRENT_LIST_DIR}/small-ejection.toml ${CMAKE_CURRENT_BINARY_DIR}/resume)
 set_tests_properties(app.resume PROPERTIES LABELS fast TIMEOUT 600)
+find_program(PVPYTHON pvpython)
+if(PVPYTHON)
+  add_test(NAME app.paraview_live
+           COMMAND ${PVPYTHON} --force-offscreen-rendering ${CMAKE_CURRENT_LIST_DIR}/../paraview/live_test.py $<TARGET_FILE:ejecta>
+                   ${CMAKE_CURRENT_LIST_DIR}/small-ejection.toml ${CMAKE_CURRENT_BINARY_DIR}/live.run)
+else()
+  add_test(NAME app.paraview_live COMMAND sh -c "echo skipped: app.paraview_live needs ParaView; exit 77")
+endif()
+set_tests_properties(app.paraview_live PROPERTIES SKIP_RETURN_CODE 77 LABELS fast TIMEOUT 300)

@@ -25,7 +25,7 @@ def result(out):
 def compare(whole, disturbed):
     if result(whole) != result(disturbed):
         raise SystemExit("failed: result.json differs")
-    for kind in ("history/*.csv", "fields/*.vt*"):
+    for kind in ("history/*.csv", "fields/*.vt*", "fields/*.pvd", "replay.jsonl"):
         for file in Path(whole).glob(kind):
             if file.read_bytes() != (Path(disturbed) / file.relative_to(whole)).read_bytes():
                 raise SystemExit(f"failed: {file.name} differs")

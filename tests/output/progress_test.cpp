@@ -39,7 +39,7 @@ TEST(Progress, LinesEveryFewSecondsInALog) {
   Driven d;
   d.run();
   const std::string text = d.out.str();
-  EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 4);  // 0, 5 and 10 s, and the end
+  EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 3);  // 5 and 10 s, and the end
   EXPECT_THAT(text, HasSubstr("t 50.000/100.000 ms  step 50  Co 0.90  10.0 Mcell/s  5.0 s left"));
   EXPECT_THAT(text, Not(HasSubstr("\x1b")));
 }
@@ -52,6 +52,16 @@ TEST(Progress, BarOnATerminalWithinItsWidth) {
   EXPECT_THAT(d.out.str(), HasSubstr("\r\x1b[K"));
   EXPECT_THAT(d.out.str(), Not(HasSubstr("\x1b[36m")));  // colour was not asked for
   EXPECT_THAT(d.out.str(), HasSubstr("done at t = 100.000 ms"));
+}
+
+TEST(Progress, VerboseIsALineEveryStepEvenOnATerminal) {
+  Driven d;
+  d.options.verbosity = Verbosity::verbose;
+  d.options.terminal = true;
+  d.run();
+  const std::string text = d.out.str();
+  EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 102);  // 101 steps and the end
+  EXPECT_THAT(text, Not(HasSubstr("\r")));
 }
 
 TEST(Progress, QuietSaysNothingButStillWritesTheFile) {

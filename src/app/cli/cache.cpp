@@ -17,7 +17,7 @@ void add_cache(CLI::App& app, Action& action) {
   command->footer("Example:\n  ejecta cache --clear");
   command->callback([clear, &action] {
     action = [clear] {
-      if (*clear) fmt::print("{} files removed\n", clear_cache(cache_directory()));
+      if (*clear) fmt::print("jets removed: {}\n", clear_cache(cache_directory()));
       else fmt::print("{}", cache_listing(cache_directory()));
       return int{exit_done};
     };

@@ -5,22 +5,28 @@
 #include <cstdio>
 
 #include "case/load.hpp"
-#include "case/sense.hpp"
 
 namespace ejecta {
 
 void add_case_options(CLI::App& command, CaseOptions& options) {
-  command.add_option("CASE", options.path, "Case file (.toml)")->required();
+  command.add_option("CASE", options.path, "Case file (.toml)")->required()->type_name("");
   command.add_option("--set", options.overrides, "Change a key: section.key=value; may be repeated")
       ->type_name("KEY=VALUE")
       ->expected(1)
       ->take_all();
 }
 
-Case load_and_warn(const CaseOptions& options) {
-  Case c = load_case(options.path, options.overrides);
-  for (const Problem& p : check_sense(c))
-    if (p.severity == Severity::warning) fmt::print(stderr, "{}\n", render(p));
+void add_threads(CLI::App& command, int& threads) {
+  command.add_option("--threads", threads, "Threads (default: all cores)")
+      ->type_name("N")
+      ->check(CLI::Range(1, 1024).description(""));
+}
+
+Case load_and_warn(const CaseOptions& options, bool quiet) {
+  std::vector<Problem> warnings;
+  Case c = load_case(options.path, options.overrides, &warnings);
+  if (!quiet)
+    for (const Problem& p : warnings) fmt::print(stderr, "{}\n", render(p));
   return c;
 }
 

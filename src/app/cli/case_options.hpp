@@ -16,7 +16,9 @@ struct CaseOptions {
 /// Adds CASE and --set to a command.
 void add_case_options(CLI::App& command, CaseOptions& options);
 
-/// Loads the case and prints what is unlikely to be meant to stderr.
-Case load_and_warn(const CaseOptions& options);
+void add_threads(CLI::App& command, int& threads);
+
+/// Loads the case and, unless `quiet`, prints what is unlikely to be meant to stderr.
+Case load_and_warn(const CaseOptions& options, bool quiet = false);
 
 }  // namespace ejecta

@@ -18,7 +18,7 @@ void add_check(CLI::App& app, Action& action) {
   CLI::App* command = app.add_subcommand(
       "check", "What a run will be: cells, steps, time, memory, disk, assumptions; runs nothing");
   auto o = std::make_shared<Options>();
-  command->add_option("CASE", o->cases, "Case files (.toml)")->required();
+  command->add_option("CASE", o->cases, "Case files (.toml)")->required()->type_name("");
   command->add_option("--set", o->overrides, "Change a key: section.key=value; may be repeated")
       ->type_name("KEY=VALUE")
       ->expected(1)
@@ -30,7 +30,9 @@ void add_check(CLI::App& app, Action& action) {
       int code = exit_done;
       for (const std::string& path : o->cases) {
         try {
-          fmt::print("{}\n", check_report(load_case(path, o->overrides), bandwidth));
+          std::vector<Problem> warnings;
+          const Case c = load_case(path, o->overrides, &warnings);
+          fmt::print("{}\n", check_report(c, warnings, bandwidth));
         } catch (const InputError& e) {
           fmt::print(stderr, "{}\n", e.what());
           code = exit_bad_input;

@@ -1,6 +1,10 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cerrno>
 #include <cstdio>
+#include <cstring>
+#include <string_view>
 
 #include "app/cli/commands.hpp"
 #include "app/exit_code.hpp"
@@ -17,9 +21,40 @@ int unknown_command(const CLI::App& app, const std::string& word) {
   for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
     known.push_back(command->get_name());
   const std::string close = nearest(word, known);
-  fmt::print(stderr, "error: there is no command \"{}\"{}\n  commands:  {}\n", word,
+  fmt::print(stderr, "error: {}{}\n  commands:  {}\n  a first case:  ejecta new > my-case.toml\n",
+             word.empty() ? "a command is needed" : fmt::format("there is no command \"{}\"", word),
              close.empty() ? "" : fmt::format(", nearest is \"{}\"", close), joined(known));
   return exit_bad_input;
+}
+
+/// What is wrong with the words after a command, and the nearest option.
+std::string wrong_words(const CLI::App& command, const CLI::ParseError& e) {
+  const std::vector<std::string> left = command.remaining();
+  const auto option =
+      std::find_if(left.begin(), left.end(), [](const std::string& word) { return word.starts_with('-'); });
+  if (option == left.end())
+    return left.empty() ? e.what() : fmt::format("\"{}\" is one word too many", left.front());
+  std::vector<std::string> known;
+  for (const CLI::Option* o : command.get_options())
+    for (const std::string& name : o->get_lnames()) known.push_back("--" + name);
+  const std::string close = nearest(option->substr(0, option->find('=')), known);
+  return fmt::format("there is no option \"{}\"{}", *option,
+                     close.empty() ? "" : fmt::format(", nearest is \"{}\"", close));
+}
+
+std::string failure(const CLI::App* app, const CLI::Error& e) {
+  const auto given = app->get_subcommands();
+  const CLI::App& command = given.empty() ? *app : *given.front();
+  return fmt::format("error: {}\n  help:  {}{} --help\n",
+                     wrong_words(command, static_cast<const CLI::ParseError&>(e)),
+                     given.empty() ? "" : app->get_name() + " ", command.get_name());
+}
+
+/// What was printed has arrived: a full disk behind `> file` shows only here.
+int flushed(int code) {
+  if (std::fflush(stdout) == 0) return code;
+  fmt::print(stderr, "error: cannot write the output: {}\n", std::strerror(errno));
+  return code == exit_done ? exit_failure : code;
 }
 
 bool is_command(const CLI::App& app, const std::string& word) {
@@ -36,28 +71,40 @@ int run_command_line(int argc, const char* const* argv) {
       "First steps:\n"
       "  ejecta new > my-case.toml      a commented case\n"
       "  ejecta check my-case.toml      what the run will be\n"
-      "  ejecta run my-case.toml        runs it",
+      "  ejecta run my-case.toml        runs it\n",
       "ejecta");
   app.set_version_flag("--version", std::string(output::version()));
   app.require_subcommand(1);
-  app.failure_message(CLI::FailureMessage::simple);
+  app.get_formatter()->label("SUBCOMMAND", "COMMAND");
+  app.get_formatter()->label("Positionals", "Arguments");
+  app.get_formatter()->label("REQUIRED", "(required)");
+  app.footer(
+      "`ejecta COMMAND --help` explains a command.\n"
+      "Exit codes: 0 done, 1 failure, 2 bad input, 3 diverged, 4 stopped and resumable, 5 validation "
+      "failed.");
+  app.failure_message(failure);
   Action action;
   for (auto* add : {add_run, add_check, add_plan, add_explain, add_new, add_jet, add_validate, add_bench,
                     add_report, add_cache})
     add(app, action);
-  if (argc > 1 && argv[1][0] != '-' && !is_command(app, argv[1])) return unknown_command(app, argv[1]);
+  for (CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
+    command->group("Commands");
+  if (argc < 2) return unknown_command(app, "");
+  if (argv[1][0] != '-' && !is_command(app, argv[1])) return unknown_command(app, argv[1]);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
     return app.exit(e) == 0 ? exit_done : exit_bad_input;
   }
   try {
-    return action();
+    return flushed(action());
   } catch (const InputError& e) {
-    fmt::print(stderr, "{}\n", e.what());
+    // A list of the errors of a case says so itself, error by error.
+    const bool list = std::string_view(e.what()).find("error: ") != std::string_view::npos;
+    fmt::print(stderr, "{}{}\n", list ? "" : "error: ", e.what());
     return exit_bad_input;
   } catch (const DivergedError& e) {
-    fmt::print(stderr, "{}\n", e.what());
+    fmt::print(stderr, "error: {}\n", e.what());
     return exit_diverged;
   } catch (const std::bad_alloc&) {
     fmt::print(stderr, "error: not enough memory; `ejecta check CASE` says how much a case needs\n");

@@ -15,20 +15,23 @@ namespace ejecta {
 
 void add_explain(CLI::App& app, Action& action) {
   struct Options {
-    std::string topic;
+    std::vector<std::string> topic;
     bool markdown = false, schema = false;
   };
   CLI::App* command =
       app.add_subcommand("explain", "What the keys of a case file mean: unit, default, range, source");
   auto o = std::make_shared<Options>();
-  command->add_option("TOPIC", o->topic, "A section, a key or a word to search for; none: all keys");
+  command->add_option("TOPIC", o->topic, "A section, a key or words to search for; none: all keys")
+      ->type_name("");
   command->add_flag("--markdown", o->markdown, "The whole reference page");
   command->add_flag("--json-schema", o->schema, "A JSON schema for editors");
   command->footer(
       "Examples:\n  ejecta explain valve.rise_time\n  ejecta explain splitter\n  ejecta explain turbulence");
   command->callback([o, &action] {
     action = [o] {
-      fmt::print("{}", o->markdown ? reference_page() : o->schema ? json_schema() : explain(o->topic));
+      fmt::print("{}", o->markdown ? reference_page()
+                       : o->schema ? json_schema()
+                                   : explain(joined(o->topic, " ")));
       return int{exit_done};
     };
   });
@@ -39,7 +42,7 @@ void add_new(CLI::App& app, Action& action) {
   auto kind = std::make_shared<std::string>(template_kinds().front().name);
   std::string known;
   for (const Word& w : template_kinds()) known += fmt::format("\n  {:<12} {}", w.name, w.help);
-  command->add_option("KIND", *kind, "Kind of case")->capture_default_str();
+  command->add_option("KIND", *kind, "Kind of case (default: ejection)")->type_name("");
   command->footer("Kinds:" + known + "\n\nExample:\n  ejecta new ejection > my-case.toml");
   command->callback([kind, &action] {
     action = [kind] {

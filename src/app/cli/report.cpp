@@ -18,7 +18,7 @@ void add_report(CLI::App& app, Action& action) {
   CLI::App* command =
       app.add_subcommand("report", "Makes report.html again; several runs are laid over each other");
   auto o = std::make_shared<Options>();
-  command->add_option("DIR", o->runs, "Run directories")->required()->check(CLI::ExistingDirectory);
+  command->add_option("DIR", o->runs, "Run directories")->required()->type_name("");
   command->add_option("--out", o->out, "File to write (default: report.html in the first directory)")
       ->type_name("FILE");
   command->footer(

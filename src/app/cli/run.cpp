@@ -3,6 +3,7 @@
 #include "app/cli/case_options.hpp"
 #include "app/cli/commands.hpp"
 #include "app/simulation.hpp"
+#include "base/error.hpp"
 
 /// The commands that compute: run, plan, jet, bench.
 namespace ejecta {
@@ -17,10 +18,17 @@ void add_run_options(CLI::App& command, RunCommand& o) {
   add_case_options(command, o.input);
   command.add_option("--out", o.run.out, "Run directory (default: the name of the case with .run)")
       ->type_name("DIR");
-  command.add_option("--threads", o.run.threads, "Threads (default: all cores)")->check(CLI::Range(1, 1024));
-  command.add_flag("--force", o.run.force, "Overwrite the run directory");
-  command.add_flag("-q,--quiet", o.run.quiet, "Print errors only");
+  add_threads(command, o.run.threads);
+  command.add_flag("--force", o.run.force, "Overwrite the run in that directory");
+  command.add_flag("-q,--quiet", o.run.quiet, "Print nothing but errors");
   command.add_flag("-v,--verbose", o.run.verbose, "Print every step");
+}
+
+/// Wishes that contradict each other.
+void require_sense(const RunOptions& o) {
+  if (o.force && o.resume)
+    throw InputError("--resume goes on with a run, --force starts anew: give one of them");
+  if (o.quiet && o.verbose) throw InputError("--quiet or --verbose: give one of them");
 }
 
 }  // namespace
@@ -32,8 +40,17 @@ void add_run(CLI::App& app, Action& action) {
   command->add_flag("--resume", o->run.resume, "Continue from the last good checkpoint");
   command->add_flag("--dry-run", o->run.dry_run, "Set everything up, take no step");
   command->footer(
-      "Example:\n  ejecta run cases/paper/10mm-cubic.toml --set valve.supply_pressure=\"600 kPa gauge\"");
-  command->callback([o, &action] { action = [o] { return run_case(load_and_warn(o->input), o->run); }; });
+      "^C, SIGTERM and `timeout` stop a run so that --resume can go on; SIGUSR1 writes a checkpoint.\n\n"
+      "Examples:\n  ejecta run cases/tutorial.toml\n"
+      "  ejecta run cases/paper/10mm-cubic.toml --set valve.supply_pressure=\"600 kPa gauge\" --out "
+      "soft.run\n"
+      "  ejecta run cases/paper/10mm-cubic.toml --resume");
+  command->callback([o, &action] {
+    action = [o] {
+      require_sense(o->run);
+      return run_case(load_and_warn(o->input, o->run.quiet), o->run);
+    };
+  });
 }
 
 void add_plan(CLI::App& app, Action& action) {
@@ -49,16 +66,18 @@ void add_jet(CLI::App& app, Action& action) {
   auto o = std::make_shared<RunCommand>();
   add_run_options(*command, *o);
   command->footer("Example:\n  ejecta jet cases/paper/10mm-cubic.toml");
-  command->callback([o, &action] { action = [o] { return jet_case(load_and_warn(o->input), o->run); }; });
+  command->callback(
+      [o, &action] { action = [o] { return jet_case(load_and_warn(o->input, o->run.quiet), o->run); }; });
 }
 
 void add_bench(CLI::App& app, Action& action) {
   CLI::App* command = app.add_subcommand(
       "bench", "Cell-steps per second on the standard case, per operator, against the machine's limit");
   auto o = std::make_shared<BenchOptions>();
-  command->add_option("--threads", o->threads, "Threads (default: all cores)")->check(CLI::Range(1, 1024));
+  add_threads(*command, o->threads);
   command->add_option("--steps", o->steps, "Timed steps")
-      ->check(CLI::Range(1, 100000))
+      ->type_name("N")
+      ->check(CLI::Range(1, 100000).description(""))
       ->capture_default_str();
   command->footer("Example:\n  ejecta bench --threads 2");
   command->callback([o, &action] { action = [o] { return bench(*o); }; });

@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <memory>
 
+#include "app/cli/case_options.hpp"
 #include "app/cli/commands.hpp"
 #include "app/exit_code.hpp"
 #include "app/validation.hpp"
@@ -19,13 +20,14 @@ void add_validate(CLI::App& app, Action& action) {
   CLI::App* command =
       app.add_subcommand("validate", "Runs shipped validation cases and compares them with their references");
   auto o = std::make_shared<Options>();
-  command->add_option("NAME", o->names,
-                      "Part of the name of a shipped case, a case file, or a directory; none: all");
+  command
+      ->add_option("NAME", o->names,
+                   "Part of the name of a shipped case, a case file, or a directory; none: all")
+      ->type_name("");
   command->add_option("--out", o->run.out, "Where the run directories go")
       ->type_name("DIR")
       ->capture_default_str();
-  command->add_option("--threads", o->run.threads, "Threads (default: all cores)")
-      ->check(CLI::Range(1, 1024));
+  add_threads(*command, o->run.threads);
   command->add_flag("--list", o->list, "Only name the cases");
   command->footer(
       "Examples:\n  ejecta validate --list\n  ejecta validate taylor-green\n  ejecta validate my-case.toml");

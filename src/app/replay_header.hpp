@@ -1,0 +1,11 @@
+#pragma once
+#include "app/coupled_model.hpp"
+#include "output/report_data.hpp"
+
+namespace ejecta {
+
+/// What a replay of the case shows besides its frames: box, slices, bodies, plate, nozzle, the undisturbed
+/// path.
+output::ReplayHeader replay_header(const Case& c, const CoupledModel& model);
+
+}  // namespace ejecta
