@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 
 #include "base/units.hpp"
 #include "case/extent.hpp"
@@ -83,6 +84,21 @@ void sense_records(const Case& c, Findings& found) {
   refuse_unnamed_twins(c.probes, "probe", found);
   refuse_unnamed_twins(c.lines, "line", found);
   refuse_unnamed_twins(c.slices, "slice", found);
+  for (std::size_t n = 0; n < c.measured.size(); ++n) {
+    const MeasuredSpec& m = c.measured[n];
+    const auto named = [&](const auto& list) {
+      return std::any_of(list.begin(), list.end(), [&](const auto& s) { return s.name == m.of; });
+    };
+    if (m.of != "centreline" && !named(c.lines) && !named(c.probes))
+      found.error(fmt::format("measured.{}.of", n),
+                  fmt::format("nothing is recorded under the name \"{}\"", m.of),
+                  "\"centreline\", or the name of a [[line]] or [[probe]]", "of = \"centreline\"");
+    std::error_code ignored;
+    if (!std::filesystem::is_regular_file(beside_case(c, m.file), ignored))
+      found.error(fmt::format("measured.{}.file", n),
+                  fmt::format("there is no file \"{}\"", beside_case(c, m.file)),
+                  "a file, relative to the folder of the case", "file = \"pitot.csv\"");
+  }
   const std::optional<Box> box = grid_box(c);
   if (c.flow.solver == FlowSolver::none) {
     for (const auto& [count, section] :
