@@ -10,6 +10,10 @@ export interface Series {
   values: ArrayLike<number>;
   colour: (dark: boolean) => string;
   dashed?: boolean;
+  /** Marks instead of a line. */
+  points?: boolean;
+  /** Places without a value are passed over. */
+  joined?: boolean;
 }
 
 export interface ChartSpec {
@@ -96,7 +100,8 @@ export function chart(spec: ChartSpec, height = 210): HTMLElement {
       series: [
         { label: spec.xLabel, value: (_u, v) => (v == null ? "\u2013" : short(v, 4)) },
         ...spec.series.map((s): uPlot.Series => ({
-          label: s.label, stroke: s.colour(dark), width: 1.6, dash: s.dashed ? [6, 4] : undefined, points: { show: false }, pxAlign: 0,
+          label: s.label, stroke: s.colour(dark), width: s.points ? 0 : 1.6, dash: s.dashed ? [6, 4] : undefined,
+          points: { show: s.points === true, size: 7 }, spanGaps: s.joined, pxAlign: 0,
           value: (_u, v) => (v == null ? "\u2013" : text(v)),
         })),
       ],

@@ -77,6 +77,22 @@ export interface Replay {
   frames: Frame[];
 }
 
+/** A diagram as the run made it; labels name quantity and unit. */
+export interface Figure {
+  title: string;
+  x_label: string;
+  y_label: string;
+  series: { label: string; x: number[]; y: number[]; dashed: boolean; points: boolean }[];
+}
+
+/** Grey, rows from the top. */
+export interface Picture {
+  title: string;
+  width: number;
+  height: number;
+  pixels: Uint8Array;
+}
+
 export interface Run {
   name: string;
   verdict: string;
@@ -85,6 +101,8 @@ export interface Run {
   caseText: string;
   history: Map<string, Table>;
   replay: Replay | null;
+  figures: Figure[];
+  pictures: Picture[];
 }
 
 function bytesOf(base64: string): Uint8Array {
@@ -112,7 +130,8 @@ interface RawFrame {
   slices: { raster: number; full_scale: number; data: string }[];
 }
 
-interface RawRun extends Omit<Run, "caseText" | "history" | "replay"> {
+interface RawRun extends Omit<Run, "caseText" | "history" | "replay" | "figures" | "pictures"> {
+  figures: { charts: Figure[]; pictures: (Omit<Picture, "pixels"> & { data: string })[] } | null;
   case: string;
   history: { [name: string]: { columns: Column[]; data: string[] } };
   replay: [] | [RawHeader, ...RawFrame[]];
@@ -161,6 +180,10 @@ async function readRun(r: RawRun): Promise<Run> {
     caseText: r.case,
     history: new Map(Object.entries(r.history).map(([name, table]) => [name, readTable(table)])),
     replay: await readReplay(r.replay),
+    figures: r.figures?.charts ?? [],
+    pictures: await Promise.all((r.figures?.pictures ?? []).map(async ({ data, ...picture }) => ({
+      ...picture, pixels: await inflate(bytesOf(data)),
+    }))),
   };
 }
 

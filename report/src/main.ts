@@ -2,6 +2,7 @@ import "./style.css";
 import { bodyColour, isDark } from "./colour";
 import { readRuns, type Run } from "./data";
 import { h, section } from "./dom";
+import { figureCharts, pictureViews } from "./figures";
 import { motionCharts, seriesCharts } from "./motion_charts";
 import { pathView } from "./path";
 import { Player } from "./player";
@@ -98,7 +99,7 @@ function page(runs: Run[]): HTMLElement {
   add("path", "Path", "Side view to scale. Faint outlines are equally far apart in time.", pathView(runs, player));
   add("replay", "Replay", "", replayView(runs, player));
   add("motion", "Motion", "x along the belt, y across it, z up and along the jet.", motionCharts(runs, player));
-  add("jet", "Jet", "", grid([...profileCharts(runs), ...seriesCharts(runs, player, (n) => n.startsWith("probe-"))]));
+  add("jet", "Jet", "", ...pictureViews(runs), grid([...figureCharts(runs), ...profileCharts(runs), ...seriesCharts(runs, player, (n) => n.startsWith("probe-"))]));
   add("expected", "Expected values", "", ...runs.map(expectationTable));
   add("books", "Books and cost", "What goes in minus what comes out, relative to what went through; and where the time went.",
     runs.some((run) => run.result) ? h("div", { class: "columns" }, costTable(runs), ledgerTable(runs)) : null, ...runs.map(operatorTable),

@@ -254,7 +254,8 @@ class IncompressibleModel : public FlowModel {
     }
     const bool whole_jet = spec.type == BoundaryType::jet;
     b.varies = b.varies || whole_jet;
-    b.state = [=, this](const Vec3& x, double t) {
+    b.state = [=, this](Vec3 x, double t) {
+      if (grid_.axisymmetric()) x.y() = case_.jet.nozzle.y();  // all around is in the one cell
       bool jet = whole_jet;
       const StateFormula* f = &formula;
       for (const Piece& p : pieces)
@@ -273,7 +274,7 @@ class IncompressibleModel : public FlowModel {
       const Axis& a = grid_.axis(d);
       return 0.5 * a.width[static_cast<std::size_t>(a.cell_at(x[d]))];
     };
-    const JetState jet = jet_->at(x, half(0), half(1), t);
+    const JetState jet = jet_->at(x, half(0), grid_.axisymmetric() ? 0.0 : half(1), t);
     BoundaryState s;
     for (int d = 0; d < 3; ++d) s.velocity[static_cast<std::size_t>(d)] = static_cast<Real>(jet.velocity[d]);
     const double k = std::max(jet.k, ambient_k_);

@@ -22,6 +22,27 @@ double half_radius(const JetModel& jet, double z, double on_axis) {
   return 0.0;
 }
 
+double supersonic_radius(const JetModel& jet, double z) {
+  const Axis& r = jet.grid().axis(0);
+  const double y = jet.grid().lower().y();
+  double mach = jet.sample({r.centre.back(), y, z}).mach;
+  for (auto i = r.centre.size() - 1; i-- > 0;) {
+    const double inner = jet.sample({r.centre[i], y, z}).mach;
+    if (inner >= 1.0)
+      return r.centre[i] + (inner - 1.0) / (inner - mach) * (r.centre[i + 1] - r.centre[i]) - r.face.front();
+    mach = inner;
+  }
+  return 0.0;
+}
+
+/// Place of the maximum of the parabola through three points around n.
+double vertex(const std::vector<double>& x, const std::vector<JetSample>& s, std::size_t n) {
+  const double left = (s[n].pressure - s[n - 1].pressure) / (x[n] - x[n - 1]);
+  const double right = (s[n + 1].pressure - s[n].pressure) / (x[n + 1] - x[n]);
+  const double at_left = 0.5 * (x[n - 1] + x[n]), at_right = 0.5 * (x[n] + x[n + 1]);
+  return at_left + left / (left - right) * (at_right - at_left);
+}
+
 /// Slope and intercept of y over x by least squares.
 std::pair<double, double> line_through(const std::vector<double>& x, const std::vector<double>& y) {
   const double n = double(x.size());
@@ -47,6 +68,7 @@ Centreline centreline(const JetModel& jet) {
     line.z.push_back(z - lower.z());
     line.samples.push_back(s);
     line.half_radius.push_back(w > kLeastAxialVelocity ? half_radius(jet, z, w) : 0.0);
+    line.supersonic_radius.push_back(supersonic_radius(jet, z));
   }
   return line;
 }
@@ -71,7 +93,7 @@ ShockStructure shock_structure(const Centreline& line) {
     // The rise right behind the disk belongs to the disk.
     if (line.z[n] > 1.2 * found.mach_disk && line.z[n] > line.z[peak] && s[n].pressure > s[n - 1].pressure &&
         s[n].pressure >= s[n + 1].pressure && s[n].pressure > 1.02 * s.back().pressure)
-      found.pressure_maxima.push_back(line.z[n]);
+      found.pressure_maxima.push_back(vertex(line.z, s, n));
   }
   if (!found.pressure_maxima.empty()) found.first_cell = found.pressure_maxima.front();
   return found;

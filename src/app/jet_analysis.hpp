@@ -11,6 +11,7 @@ struct Centreline {
   std::vector<JetSample> samples;
   std::vector<double>
       half_radius;  ///< m, where the axial velocity is half that on the axis; 0 where there is none
+  std::vector<double> supersonic_radius;  ///< m, within which Mach 1 is reached; 0 where it is not
 };
 
 Centreline centreline(const JetModel& jet);

@@ -2,45 +2,39 @@
 #include <memory>
 #include <vector>
 
+#include "app/jet_air.hpp"
 #include "app/jet_drive.hpp"
 #include "base/clock.hpp"
 #include "case/case.hpp"
-#include "flow/godunov/from_case.hpp"
+#include "flow/gas.hpp"
 #include "grid/grid.hpp"
 
 namespace ejecta {
 
 /// What the air does at a point of a jet.
-struct JetSample {
-  Vec3 velocity{0, 0, 0};    ///< m/s
-  double pressure = 0.0;     ///< Pa absolute, static
-  double density = 0.0;      ///< kg/m3
+struct JetSample : JetPoint {
   double temperature = 0.0;  ///< K
-  double mach = 0.0;
-  double k = 0.0, epsilon = 0.0;
+  double mach = 0.0;         ///< incompressible: on the speed of sound of the ambient
   double total_gauge = 0.0;  ///< Pa above ambient: isentropic stagnation of the axial flow
   double pitot_gauge = 0.0;  ///< Pa above ambient: what a Pitot tube along the axis reads (behind its shock)
 };
 
-/// Flow of one conserved quantity through a plane across the jet.
-struct JetFlow {
-  double mass = 0.0;      ///< kg/s
-  double momentum = 0.0;  ///< N: of rho w^2 + (p - pa) less the axial stress
-};
-
-/// The jet of a valve computed from its orifice: the compressible solver of a case whose boundary has a patch
-/// of type "jet", driven by the valve.
+/// The jet of a valve computed from its orifice, a patch of type "jet" on the lower z-face, and driven by the
+/// valve: compressible, or incompressible at the momentum-equivalent velocity.
 class JetModel {
  public:
-  /// Throws InputError when the case has no compressible jet, the supply cannot blow, or the orifice is not
-  /// resolved by the grid.
+  /// Throws InputError when the case has no such jet, the supply cannot blow, or the orifice is not the one
+  /// of the valve.
   explicit JetModel(const Case& c);
+  JetModel(const JetModel&) = delete;  // the air refers to case and grid
+  JetModel& operator=(const JetModel&) = delete;
 
   double time() const { return clock_.time(); }
   std::int64_t steps() const { return clock_.step(); }
   Clock& clock() { return clock_; }
   /// Advances by one stable step that does not pass the next event; returns it, s.
   double step();
+  double last_step() const { return last_step_; }  ///< s; 0 before the first
 
   JetSample sample(const Vec3& position) const;
   /// Through the z-plane of lower face k, whole jet (symmetry planes and the axis made up for).
@@ -53,12 +47,11 @@ class JetModel {
   const Grid& grid() const { return grid_; }
   const Case& scenario() const { return case_; }
   const Valve& valve() const { return drive_.valve(); }
-  const godunov::Solver& solver() const { return *solver_; }
   double ambient_pressure() const { return case_.environment.pressure; }
   double orifice_diameter() const { return case_.valve.orifice_diameter; }
   double cells_across_orifice() const;
-  /// Share of the jet inside the box is 1/fold: 4 for a quarter domain.
-  double fold() const { return fold_; }
+  /// Whole jet over the part inside the box: 4 for a quarter domain, 2 pi for the wedge of one radian.
+  double around() const { return around_; }
 
  private:
   JetFlow sum_flow(int k, double within) const;
@@ -66,10 +59,10 @@ class JetModel {
   Grid grid_;
   JetDrive drive_;
   Gas gas_;
-  std::vector<godunov::DrivenInlet> inlets_;
-  std::unique_ptr<godunov::Solver> solver_;
+  PatchSpec orifice_;
+  std::unique_ptr<JetAir> air_;
   Clock clock_;
-  double fold_ = 1.0;
+  double around_ = 1.0, last_step_ = 0.0;
 };
 
 }  // namespace ejecta

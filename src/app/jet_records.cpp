@@ -1,14 +1,12 @@
 #include "app/jet_records.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
 
 namespace ejecta {
 namespace {
-
-/// The valve counts as fully open here.
-constexpr double kFullyOpen = 0.999;
 
 /// Points of the average over the opening of a transducer: rings of equal area, evenly around.
 constexpr int kRings = 4, kAround = 8;
@@ -17,7 +15,7 @@ double percent(double value, double reference) { return 100.0 * (value / referen
 
 }  // namespace
 
-JetProbe::JetProbe(const JetModel&, const ProbeSpec& spec, const output::RunDirectory& directory,
+JetProbe::JetProbe(const ProbeSpec& spec, const output::RunDirectory& directory,
                    std::span<const std::string> provenance)
     : spec_(spec),
       history_(directory.history(spec.name), provenance,
@@ -59,6 +57,9 @@ void JetProbe::write(const JetModel& jet) {
   const std::array<double, 8> row{s.total_gauge, reading_, s.velocity.z(), s.mach, s.pressure,
                                   s.density,     s.k,      s.epsilon};
   history_.add(jet.time(), row);
+  times_.push_back(jet.time());
+  ideal_.push_back(s.total_gauge);
+  readings_.push_back(reading_);
 }
 
 nlohmann::ordered_json JetProbe::summary() const {
@@ -128,36 +129,38 @@ nlohmann::ordered_json OrificeRecord::summary(const JetModel& jet) const {
   return r;
 }
 
-MomentumRecord::MomentumRecord(const JetModel& jet) {
-  const Axis& z = jet.grid().axis(2);
-  constexpr int kPlanes = 12;
-  for (int n = 1; n <= kPlanes; ++n) {
-    const double at = z.face.front() + z.length() * n / kPlanes;
-    const int plane = n == kPlanes ? z.n : z.cell_at(at);
-    planes_.push_back(plane);
-    height_.push_back(z.face[static_cast<std::size_t>(plane)] - z.face.front());
-  }
-  momentum_.assign(planes_.size(), 0.0);
-  mass_.assign(planes_.size(), 0.0);
+MomentumRecord::MomentumRecord(const JetModel& jet) : sum_(jet.grid().axis(2).face.size(), 0.0) {
+  for (const double z : jet.grid().axis(2).face) height_.push_back(z - jet.grid().lower().z());
 }
 
-void MomentumRecord::advance(const JetModel& jet, double dt) {
-  if (jet.valve().opening(jet.time()) < kFullyOpen) return;
+void MomentumRecord::observe(const JetModel& jet, double dt) {
+  for (std::size_t k = 0; k < sum_.size(); ++k) sum_[k] += dt * jet.through(static_cast<int>(k)).momentum;
+  thrust_ += dt * jet.orifice_flow().momentum;
   time_ += dt;
-  for (std::size_t n = 0; n < planes_.size(); ++n) {
-    const JetFlow flow = jet.through(planes_[n]);
-    momentum_[n] += flow.momentum * dt;
-    mass_[n] += flow.mass * dt;
-  }
+}
+
+std::vector<double> MomentumRecord::mean() const {
+  std::vector<double> m = sum_;
+  for (double& value : m) value /= time_ > 0.0 ? time_ : 1.0;
+  return m;
 }
 
 nlohmann::ordered_json MomentumRecord::summary() const {
-  nlohmann::ordered_json planes = nlohmann::ordered_json::array();
-  for (std::size_t n = 0; n < planes_.size() && time_ > 0.0; ++n)
-    planes.push_back({{"height_m", height_[n]},
-                      {"momentum_N", momentum_[n] / time_},
-                      {"mass_flow_kg_s", mass_[n] / time_}});
-  return planes;
+  constexpr int kHeights = 12;
+  nlohmann::ordered_json r{{"thrust_N", thrust()}, {"averaged_over_s", time_}};
+  if (time_ <= 0.0) return r;
+  const std::vector<double> momentum = mean();
+  const auto [low, high] = std::minmax_element(momentum.begin(), momentum.end());
+  r["least_over_thrust"] = *low / thrust();
+  r["most_over_thrust"] = *high / thrust();
+  r["heights"] = nlohmann::ordered_json::array();
+  for (int n = 0; n <= kHeights; ++n) {
+    const double at = height_.back() * n / kHeights * (1.0 - 1e-9);
+    const auto k =
+        static_cast<std::size_t>(std::lower_bound(height_.begin(), height_.end(), at) - height_.begin());
+    r["heights"].push_back({{"height_m", height_[k]}, {"over_thrust", momentum[k] / thrust()}});
+  }
+  return r;
 }
 
 JetProfile::Moment profile_moment(const JetModel& jet, double height, const std::vector<double>& radii) {

@@ -12,6 +12,7 @@ struct RunOptions {
   bool force = false;    ///< overwrite a run directory
   bool dry_run = false;  ///< set everything up, take no step
   bool quiet = false, verbose = false;
+  bool sweep = false;  ///< `ejecta jet`: the jets of jet.sweep_pressures and jet.sweep_velocities instead
 };
 
 struct BenchOptions {

@@ -150,6 +150,10 @@ struct JetSpec {
   double inlet_velocity = 0.0;  ///< m/s for "velocity-inlet"; 0: the momentum-equivalent velocity
   double turbulence_intensity = 0.05;
   std::string source_case;  ///< for "computed": the jet case
+  /// `ejecta jet` also computes the incompressible jet of the momentum-equivalent velocity (paper, Figure 7)
+  bool compare_incompressible = false;
+  std::vector<double> sweep_pressures;   ///< Pa absolute, supplies of `ejecta jet --sweep`, compressible
+  std::vector<double> sweep_velocities;  ///< m/s, inlets of `ejecta jet --sweep`, incompressible
 };
 
 /// [[material]]
@@ -258,6 +262,12 @@ struct SliceSpec {
   double position = 0.0;
 };
 
+/// [[measured]]: a measurement that `ejecta jet` draws into its figures and compares with
+struct MeasuredSpec {
+  std::string of;    ///< "centreline", or the name of a line or a probe
+  std::string file;  ///< CSV: position along it in m (a probe: time in s), total gauge pressure in Pa
+};
+
 /// [output]
 struct OutputSpec {
   double fields_interval = 0.0;   ///< s, 0: none
@@ -330,6 +340,7 @@ struct Case {
   std::vector<ProbeSpec> probes;
   std::vector<LineSpec> lines;
   std::vector<SliceSpec> slices;
+  std::vector<MeasuredSpec> measured;
   OutputSpec output;
   CheckpointSpec checkpoint;
   ExactSpec exact;

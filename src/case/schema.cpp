@@ -66,6 +66,7 @@ std::vector<Section> sections(Case& c) {
            list("probe", "Points recorded in history/", c.probes),
            list("line", "Lines recorded in history/", c.lines),
            list("slice", "Planes recorded in fields/", c.slices),
+           list("measured", "Measurements that `ejecta jet` compares with", c.measured),
            table("output", "What is written, and how often", c.output),
            table("checkpoint", "When the state is saved for --resume", c.checkpoint), exact,
            list("expect", "What `ejecta validate` compares with result.json", c.expects),

@@ -38,6 +38,7 @@ std::vector<Key> keys(StreamSpec&);
 std::vector<Key> keys(ProbeSpec&);
 std::vector<Key> keys(LineSpec&);
 std::vector<Key> keys(SliceSpec&);
+std::vector<Key> keys(MeasuredSpec&);
 std::vector<Key> keys(OutputSpec&);
 std::vector<Key> keys(CheckpointSpec&);
 std::vector<Key> keys(ExactSpec&, Dimension pressure);

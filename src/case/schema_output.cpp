@@ -70,6 +70,20 @@ std::vector<Key> keys(SliceSpec& s) {
           {"position", &s.position, length, anything, "Where the plane cuts that axis", ""}};
 }
 
+std::vector<Key> keys(MeasuredSpec& s) {
+  return {{.name = "of",
+           .slot = &s.of,
+           .help = "What was measured: \"centreline\", or the name of a line or a probe of a jet",
+           .required = true,
+           .example = "\"centreline\""},
+          {.name = "file",
+           .slot = &s.file,
+           .help = "CSV with two columns and their units: position (m, mm) or time (s, ms), total gauge "
+                   "pressure (Pa, kPa)",
+           .required = true,
+           .example = "\"pitot.csv\""}};
+}
+
 std::vector<Key> keys(OutputSpec& s) {
   return {
       {"fields_interval", &s.fields_interval, time, not_negative, "Between whole fields (.vtr); 0: none", ""},

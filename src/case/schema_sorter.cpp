@@ -57,7 +57,26 @@ std::vector<Key> keys(JetSpec& s) {
            .slot = &s.source_case,
            .help = "Case that computes the jet, for \"computed\"",
            .unset = "none",
-           .example = "\"jet.toml\""}};
+           .example = "\"jet.toml\""},
+          {"compare_incompressible", &s.compare_incompressible, none, anything,
+           "`ejecta jet` also computes the incompressible jet of the momentum-equivalent velocity",
+           "paper, Figure 7"},
+          {.name = "sweep_pressures",
+           .slot = &s.sweep_pressures,
+           .dimension = pressure_absolute,
+           .bounds = positive,
+           .help = "Supplies that `ejecta jet --sweep` computes, compressible",
+           .source = "paper 3.1: 400 to 900 kPa",
+           .unset = "none",
+           .example = R"(["400 kPa gauge", "700 kPa gauge"])"},
+          {.name = "sweep_velocities",
+           .slot = &s.sweep_velocities,
+           .dimension = velocity,
+           .bounds = positive,
+           .help = "Inlet velocities that `ejecta jet --sweep` computes, incompressible",
+           .source = "paper 3.1: 600 to 900 m/s",
+           .unset = "none",
+           .example = R"(["600 m/s", "900 m/s"])"}};
 }
 
 std::vector<Key> keys(LaunchSpec& s) {

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 
 #include "base/text.hpp"
 #include "base/units.hpp"
@@ -89,6 +90,21 @@ void sense_records(const Case& c, Findings& found) {
   check_file_names(c.probes, "probe", found);
   check_file_names(c.lines, "line", found);
   check_file_names(c.slices, "slice", found);
+  for (std::size_t n = 0; n < c.measured.size(); ++n) {
+    const MeasuredSpec& m = c.measured[n];
+    const auto named = [&](const auto& list) {
+      return std::any_of(list.begin(), list.end(), [&](const auto& s) { return s.name == m.of; });
+    };
+    if (m.of != "centreline" && !named(c.lines) && !named(c.probes))
+      found.error(fmt::format("measured.{}.of", n),
+                  fmt::format("nothing is recorded under the name \"{}\"", m.of),
+                  "\"centreline\", or the name of a [[line]] or [[probe]]", "of = \"centreline\"");
+    std::error_code ignored;
+    if (!std::filesystem::is_regular_file(beside_case(c, m.file), ignored))
+      found.error(fmt::format("measured.{}.file", n),
+                  fmt::format("there is no file \"{}\"", beside_case(c, m.file)),
+                  "a file, relative to the folder of the case", "file = \"pitot.csv\"");
+  }
   const std::optional<Box> box = grid_box(c);
   if (c.flow.solver == FlowSolver::none) {
     for (const auto& [count, section] :

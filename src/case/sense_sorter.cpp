@@ -19,6 +19,34 @@ bool has_jet(const Case& c) {
                       [](const PatchSpec& p) { return p.type == BoundaryType::jet; }));
 }
 
+/// Cells across the orifice below which its jet means nothing
+constexpr double kFewestAcross = 8.0;
+
+/// What a jet computed from its orifice needs.
+void check_orifice(const Case& c, Findings& found) {
+  const ValveSpec& v = c.valve;
+  const double closes = v.opens_at + v.delay + v.duration;
+  if (v.shape != ValveShape::trace && closes > c.run.end_time)
+    found.error(
+        "valve.duration",
+        fmt::format("the pulse is longer than the simulated time: it ends at {:.4g} ms, the run at {:.4g} ms",
+                    1e3 * closes, 1e3 * c.run.end_time),
+        "a pulse that ends before run.end_time", "duration = \"8 ms\"");
+  const AxisSpec& x = c.grid.axis[0];
+  for (std::size_t n = 0; n < c.boundary[4].patches.size(); ++n) {
+    const PatchSpec& p = c.boundary[4].patches[n];
+    if (p.type != BoundaryType::jet || x.points.size() != x.cells.size() + 1) continue;
+    const double across = 2.0 * p.radius / widest_cell(x, p.centre.x(), p.centre.x() + 0.9 * p.radius);
+    if (across < kFewestAcross)
+      found.error(fmt::format("boundary.z_min.patch.{}.radius", n),
+                  fmt::format("the nozzle is not resolved: {:.1f} cells across an orifice of {:.3g} mm",
+                              across, 2e3 * p.radius),
+                  fmt::format("at least {:.0f} cells across it, better 16: finer [grid.x] near the axis",
+                              kFewestAcross),
+                  "[grid.x] points = [\"0 mm\", \"0.9 mm\", \"70 mm\"], cells = [8, 60], grading = [1, 40]");
+  }
+}
+
 std::string ms(double seconds) { return fmt::format("{:.3g} ms", 1e3 * seconds); }
 
 /// The time at which the undisturbed body is over the jet against the time at which the jet blows.
@@ -81,6 +109,7 @@ void sense_sorter(const Case& c, Findings& found) {
     if (c.jet.kind == JetKind::computed && c.jet.source_case.empty())
       found.error("jet.source_case", "a computed jet needs the case that computes it",
                   "a case file beside this one", "source_case = \"jet.toml\"");
+    if (c.flow.solver == FlowSolver::compressible) check_orifice(c, found);
     if (c.launch.enabled)
       for (const BodySpec& b : c.bodies)
         if (b.on_belt) check_pulse(c, b, found);

@@ -86,6 +86,7 @@ std::string run_json(const fs::path& directory) {
                     {"result", result},
                     {"manifest", json_file(directory / "manifest.json")},
                     {"case", fs::exists(directory / "case.toml") ? read_file(directory / "case.toml") : ""},
+                    {"figures", json_file(run.figures())},
                     {"history", ordered_json::object()}};
   for (const fs::path& path : files_in(directory / "history", ".csv"))
     json["history"][path.stem().string()] = history_json(path);

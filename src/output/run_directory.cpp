@@ -14,8 +14,9 @@ namespace fs = std::filesystem;
 namespace ejecta::output {
 namespace {
 
-constexpr std::array kContents{"case.toml",    "manifest.json", "result.json", "progress.json", "history",
-                               "replay.jsonl", "fields",        "checkpoints", "report.html"};
+constexpr std::array kContents{"case.toml",   "manifest.json", "result.json",  "progress.json",
+                               "history",     "replay.jsonl",  "figures.json", "fields",
+                               "checkpoints", "report.html"};
 
 [[noreturn]] void refuse(const fs::path& path, const std::error_code& why) {
   throw InputError(fmt::format("cannot write the run directory {}: {} (choose another place with --out DIR)",

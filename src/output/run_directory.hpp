@@ -36,6 +36,7 @@ class RunDirectory {
   std::filesystem::path fields() const { return path_ / "fields"; }
   std::filesystem::path checkpoints() const { return path_ / "checkpoints"; }
   std::filesystem::path replay() const { return path_ / "replay.jsonl"; }
+  std::filesystem::path figures() const { return path_ / "figures.json"; }
   std::filesystem::path progress() const { return path_ / "progress.json"; }
 
   void write_case(std::string_view toml) const;

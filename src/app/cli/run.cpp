@@ -65,9 +65,12 @@ void add_jet(CLI::App& app, Action& action) {
   CLI::App* command = app.add_subcommand("jet", "Computes only the jet and stores it for later runs");
   auto o = std::make_shared<RunCommand>();
   add_run_options(*command, *o);
-  command->footer("Example:\n  ejecta jet cases/paper/10mm-cubic.toml");
-  command->callback(
-      [o, &action] { action = [o] { return jet_case(load_and_warn(o->input, o->run.quiet), o->run); }; });
+  command->add_flag("--sweep", o->run.sweep,
+                    "Instead: the settled jets of jet.sweep_pressures and jet.sweep_velocities, and the "
+                    "equivalent velocity of each pressure");
+  command->footer(
+      "Examples:\n  ejecta jet cases/paper/jet-700kPa.toml\n  ejecta jet cases/paper/jet-700kPa.toml --sweep");
+  command->callback([o, &action] { action = [o] { return jet_case(load_and_warn(o->input, o->run.quiet), o->run); }; });
 }
 
 void add_bench(CLI::App& app, Action& action) {

@@ -10,6 +10,18 @@
 #include "app/validation.hpp"
 
 namespace ejecta {
+namespace {
+
+/// A case whose orifice drives a compressible flow is one of `ejecta jet`.
+int run_or_jet(const Case& c, const RunOptions& options) {
+  const auto& patches = c.boundary[4].patches;
+  const bool jet = c.flow.solver == FlowSolver::compressible &&
+                   std::any_of(patches.begin(), patches.end(),
+                               [](const PatchSpec& p) { return p.type == BoundaryType::jet; });
+  return jet ? jet_case(c, options) : run_case(c, options);
+}
+
+}  // namespace
 
 void add_validate(CLI::App& app, Action& action) {
   struct Options {
@@ -41,7 +53,7 @@ void add_validate(CLI::App& app, Action& action) {
           continue;
         }
         fmt::print(stderr, "[{}/{}] {}\n", done.size() + 1, files.size(), file.string());
-        done.push_back(validate_case(file.string(), o->run, run_case));
+        done.push_back(validate_case(file.string(), o->run, run_or_jet));
       }
       if (o->list) return int{exit_done};
       fmt::print("{}", validation_table(done));

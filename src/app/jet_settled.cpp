@@ -1,0 +1,87 @@
+#include "app/jet_settled.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "app/jet_records.hpp"
+
+namespace ejecta {
+namespace {
+
+constexpr double kPenetration = 3.0;  // Gamma of a starting round jet
+constexpr double kArrivals = 4.0;
+constexpr double kOpening = 0.2e-3;  ///< s, within which the valve opens: sooner, and the box rings
+constexpr double kLook = 5e-6;       ///< s, between two looks at the momentum
+
+/// Time the head of the jet needs to `height`, s.
+double arrival(const Case& c, const NozzleExit& exit, double height) {
+  const double momentum = nozzle_thrust(exit, c.valve.discharge_coefficient, c.valve.orifice_diameter);
+  return std::pow(height / kPenetration, 2) / std::sqrt(momentum / c.fluid.density);
+}
+
+Case blown(Case c, double time) {
+  ValveSpec& v = c.valve;
+  v.shape = ValveShape::smooth;
+  v.opens_at = v.delay = v.fall_time = 0.0;
+  v.rise_time = kOpening;
+  v.duration = c.run.end_time = kOpening + time;
+  v.more_pulses.clear();
+  return c;
+}
+
+}  // namespace
+
+double SettledJet::momentum_at(double height) const {
+  const auto above = std::lower_bound(heights.begin(), heights.end(), height);
+  return momentum[std::min(static_cast<std::size_t>(above - heights.begin()), momentum.size() - 1)];
+}
+
+Case incompressible_jet(Case c, double velocity) {
+  c.flow.solver = FlowSolver::incompressible;
+  c.jet.kind = JetKind::velocity_inlet;
+  c.jet.inlet_velocity = velocity;
+  return c;
+}
+
+SettledJet settled_jet(const Case& c, double height, const std::function<void(const std::string&)>& note) {
+  const Gas gas{c.fluid.gamma, c.fluid.gas_constant};
+  const double warm =
+      c.valve.supply_temperature > 0.0 ? c.valve.supply_temperature : c.environment.temperature;
+  const NozzleExit exit = nozzle_exit(gas, c.valve.supply_pressure, warm, c.environment.pressure);
+  const double head = arrival(c, exit, height);
+  SettledJet s{.scenario = blown(c, kArrivals * head)};
+  s.equivalent_velocity = nozzle_equivalent_velocity(exit, c.valve.discharge_coefficient, c.fluid.density);
+  JetModel jet(s.scenario);
+  MomentumRecord momentum(jet);
+  const double end = s.scenario.run.end_time;
+  double unseen = 0.0;
+  // The valve shuts at the end: what is looked at is the last moment before.
+  while (jet.time() + jet.last_step() < end) {
+    const double dt = jet.step();
+    if (jet.time() < end - head || (unseen += dt) < kLook) continue;
+    momentum.observe(jet, unseen);
+    unseen = 0.0;
+  }
+  s.time = jet.time();
+  s.steps = jet.steps();
+  s.line = centreline(jet);
+  s.heights = momentum.heights();
+  s.momentum = momentum.mean();
+  s.thrust = momentum.thrust();
+  s.momentum_summary = momentum.summary();
+  s.at_stand_off = jet.sample(jet.grid().lower() + Vec3(0, 0, c.launch.stand_off));
+  note(fmt::format(
+      "{}: {:.3f} ms, {} steps, {:.0f} m/s and {:.2f} kPa on the axis at {:.0f} mm",
+      c.flow.solver == FlowSolver::compressible
+          ? fmt::format("compressible, {:.0f} kPa gauge",
+                        1e-3 * (c.valve.supply_pressure - c.environment.pressure))
+          : fmt::format("incompressible, {:.0f} m/s",
+                        c.jet.inlet_velocity > 0.0 ? c.jet.inlet_velocity : s.equivalent_velocity),
+      1e3 * s.time, s.steps, s.at_stand_off.velocity.z(), 1e-3 * s.at_stand_off.total_gauge,
+      1e3 * c.launch.stand_off));
+  return s;
+}
+
+}  // namespace ejecta

@@ -1,0 +1,133 @@
+#include "app/jet_sweep.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iostream>
+
+#include "app/exit_code.hpp"
+#include "app/jet_figures.hpp"
+#include "app/jet_settled.hpp"
+#include "base/error.hpp"
+#include "base/parallel.hpp"
+#include "base/stopwatch.hpp"
+#include "case/write.hpp"
+#include "output/report.hpp"
+#include "output/run_directory.hpp"
+
+namespace ejecta {
+namespace {
+
+using nlohmann::ordered_json;
+
+ordered_json entry(const SettledJet& jet) {
+  return {{"thrust_N", jet.thrust},
+          {"momentum_N", jet.momentum_at(jet.scenario.launch.stand_off)},
+          {"velocity_m_s", jet.at_stand_off.velocity.z()},
+          {"mach", jet.at_stand_off.mach},
+          {"total_gauge_Pa", jet.at_stand_off.total_gauge},
+          {"settled_s", jet.time},
+          {"steps", jet.steps}};
+}
+
+/// The velocities found for each pressure, beside the formula's.
+output::Figure velocities_figure(const std::vector<double>& gauge, const ordered_json& jets) {
+  output::Figure f{"Equivalent inlet velocity", "supply, gauge [kPa]", "velocity [m/s]"};
+  for (const auto& [label, key] :
+       {std::pair{"momentum formula", "equivalent_velocity_formula_m_s"},
+        {"same momentum at the stand-off", "equivalent_velocity_momentum_m_s"},
+        {"same total pressure at the stand-off", "equivalent_velocity_total_pressure_m_s"}}) {
+    output::FigureSeries s{label, {}, {}};
+    for (std::size_t n = 0; n < gauge.size(); ++n)
+      if (jets[n].contains(key)) s.x.push_back(1e-3 * gauge[n]), s.y.push_back(jets[n][key]);
+    s.dashed = f.series.empty();
+    if (!s.x.empty()) f.series.push_back(std::move(s));
+  }
+  return f;
+}
+
+}  // namespace
+
+double where_square_reaches(const std::vector<double>& x, const std::vector<double>& y, double wanted) {
+  const auto above = std::lower_bound(y.begin(), y.end(), wanted);
+  if (above == y.begin()) return x.front() * std::sqrt(wanted / y.front());
+  if (above == y.end()) return x.back() * std::sqrt(wanted / y.back());
+  const auto n = static_cast<std::size_t>(above - y.begin());
+  const double share = (wanted - y[n - 1]) / (y[n] - y[n - 1]);
+  return std::sqrt((1.0 - share) * x[n - 1] * x[n - 1] + share * x[n] * x[n]);
+}
+
+int sweep_jet(const Case& original, const RunOptions& options) {
+  Case c = original;
+  std::sort(c.jet.sweep_pressures.begin(), c.jet.sweep_pressures.end());
+  std::sort(c.jet.sweep_velocities.begin(), c.jet.sweep_velocities.end());
+  if (c.jet.sweep_pressures.empty() && c.jet.sweep_velocities.empty())
+    throw InputError(
+        "a sweep needs jet.sweep_pressures or jet.sweep_velocities, e.g. --set "
+        "jet.sweep_pressures='[\"400 kPa gauge\", \"700 kPa gauge\"]'");
+  const auto directory = output::RunDirectory::create(
+      options.out.empty() ? output::RunDirectory::default_path(c.path) : std::filesystem::path(options.out),
+      options.force);
+  const output::Provenance provenance{.command = "ejecta jet --sweep " + c.path,
+                                      .case_path = c.path,
+                                      .input = write_case(c),
+                                      .threads = thread_count()};
+  directory.write_case(provenance.input);
+  directory.write_manifest(output::make_manifest(provenance));
+  const auto note = [&](const std::string& line) {
+    if (!options.quiet) std::cerr << line << std::endl;
+  };
+  const double height = c.launch.stand_off, start = wall_seconds();
+  output::Figure lines = centreline_figure("Total pressure on the axis (paper, Figure 7)");
+
+  ordered_json slow = ordered_json::array(), fast = ordered_json::array();
+  std::vector<double> momenta, totals, gauges;
+  for (const double velocity : c.jet.sweep_velocities) {
+    const SettledJet jet = settled_jet(incompressible_jet(c, velocity), height, note);
+    momenta.push_back(jet.momentum_at(height));
+    totals.push_back(jet.at_stand_off.total_gauge);
+    slow.push_back(entry(jet));
+    slow.back()["inlet_velocity_m_s"] = velocity;
+    lines.series.push_back(centreline_series(fmt::format("incompressible, {:.0f} m/s", velocity), jet.line));
+    lines.series.back().dashed = true;
+  }
+  for (const double supply : c.jet.sweep_pressures) {
+    Case at = c;
+    at.valve.supply_pressure = supply;
+    const SettledJet jet = settled_jet(at, height, note);
+    gauges.push_back(supply - c.environment.pressure);
+    ordered_json e = entry(jet);
+    e["supply_gauge_Pa"] = gauges.back();
+    e["mach_disk_m"] = shock_structure(jet.line).mach_disk;
+    e["equivalent_velocity_formula_m_s"] = jet.equivalent_velocity;
+    if (!slow.empty()) {
+      e["equivalent_velocity_momentum_m_s"] =
+          where_square_reaches(c.jet.sweep_velocities, momenta, jet.momentum_at(height));
+      e["equivalent_velocity_total_pressure_m_s"] =
+          where_square_reaches(c.jet.sweep_velocities, totals, jet.at_stand_off.total_gauge);
+    }
+    fast.push_back(std::move(e));
+    lines.series.push_back(
+        centreline_series(fmt::format("compressible, {:.0f} kPa", 1e-3 * gauges.back()), jet.line));
+  }
+
+  output::Figures figures;
+  if (!fast.empty()) figures.add(velocities_figure(gauges, fast));
+  figures.add(beyond(lines, 1e3 * kFarView, "Total pressure on the axis, far part"));
+  figures.add(std::move(lines));
+  figures.write(directory.figures());
+  const ordered_json result{{"title", c.run.title},
+                            {"outcome", "jets swept"},
+                            {"stand_off_m", height},
+                            {"threads", thread_count()},
+                            {"wall_time_s", wall_seconds() - start},
+                            {"compressible", fast},
+                            {"incompressible", slow}};
+  directory.write_result(result);
+  if (c.output.report) output::write_report(directory.path());
+  if (!options.quiet) fmt::print("{}\n", result.dump(2));
+  return exit_done;
+}
+
+}  // namespace ejecta

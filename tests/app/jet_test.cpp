@@ -1,0 +1,186 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "app/jet_measured.hpp"
+#include "app/jet_model.hpp"
+#include "app/jet_settled.hpp"
+#include "app/jet_store.hpp"
+#include "app/jet_sweep.hpp"
+#include "base/error.hpp"
+#include "case/load.hpp"
+
+using namespace ejecta;
+using testing::HasSubstr;
+namespace fs = std::filesystem;
+
+namespace {
+
+/// A jet small enough for a second: 8 cells across the orifice, 12 mm long.
+std::string small_jet(const std::string& more = "") {
+  return R"(
+[run]
+end_time = "0.2 ms"
+courant = 0.9
+[flow]
+solver = "compressible"
+turbulence = "k-epsilon"
+[valve]
+supply_pressure = "700 kPa gauge"
+orifice_diameter = "1.8 mm"
+rise_time = "0.02 ms"
+fall_time = "0 ms"
+duration = "0.1 ms"
+[launch]
+stand_off = "10 mm"
+[grid]
+geometry = "axisymmetric"
+[grid.x]
+points = ["0 mm", "0.9 mm", "10 mm"]
+cells = [4, 16]
+grading = [1, 6]
+[grid.y]
+points = ["0 mm", "1 mm"]
+cells = [1]
+[grid.z]
+points = ["0 mm", "12 mm"]
+cells = [40]
+[boundary.x_max]
+type = "free-stream"
+[boundary.y_min]
+type = "symmetry"
+[boundary.y_max]
+type = "symmetry"
+[boundary.z_min]
+type = "wall"
+[[boundary.z_min.patch]]
+type = "jet"
+centre = ["0 mm", "0 mm", "0 mm"]
+radius = "0.9 mm"
+[boundary.z_max]
+type = "wave-transmissive"
+)" + more;
+}
+
+Case small_case(const std::string& more = "") { return parse_case(small_jet(more), "small jet"); }
+
+class Folder : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder = fs::temp_directory_path() / "ejecta-jet-test";
+    fs::remove_all(folder);
+    fs::create_directories(folder);
+    setenv("EJECTA_CACHE", folder.c_str(), 1);
+  }
+  void TearDown() override {
+    unsetenv("EJECTA_CACHE");
+    fs::remove_all(folder);
+  }
+  fs::path file(const std::string& text) {
+    std::ofstream(folder / "measured.csv") << text;
+    return folder / "measured.csv";
+  }
+  fs::path folder;
+};
+
+using JetStore = Folder;
+using Measured = Folder;
+
+TEST_F(JetStore, TheSecondTimeTheJetIsReadNotComputed) {
+  std::vector<std::string> notes;
+  const auto note = [&](const std::string& line) { notes.push_back(line); };
+  const JetProfile computed = stored_or_computed_jet(small_case(), 10e-3, note);
+  ASSERT_EQ(notes.size(), 1u);
+  const JetProfile read = stored_or_computed_jet(small_case(), 10e-3, note);
+  EXPECT_EQ(notes.size(), 1u);
+  EXPECT_EQ(read.at({1e-3, 0, 0}, 1e-4).velocity.z(), computed.at({1e-3, 0, 0}, 1e-4).velocity.z());
+}
+
+TEST_F(JetStore, ADamagedOrHalfWrittenJetIsNamedAndComputedAgain) {
+  const Case c = small_case();
+  const fs::path stored = jet_file(c, 10e-3);
+  const auto size_after = [&](const auto& damage) {
+    stored_or_computed_jet(c, 10e-3, [](const std::string&) {});
+    const auto whole = fs::file_size(stored);
+    damage();
+    std::string all;
+    stored_or_computed_jet(c, 10e-3, [&](const std::string& line) { all += line + '\n'; });
+    EXPECT_THAT(all, HasSubstr("is damaged"));
+    EXPECT_THAT(all, HasSubstr(stored.string()));
+    EXPECT_EQ(fs::file_size(stored), whole);
+  };
+  size_after([&] { fs::resize_file(stored, fs::file_size(stored) / 2); });
+  size_after([&] {
+    std::fstream f(stored, std::ios::in | std::ios::out | std::ios::binary);
+    f.seekp(500);
+    f.put('x');
+  });
+}
+
+TEST_F(JetStore, TitleAndOutputsDoNotMatterTheValveDoes) {
+  EXPECT_EQ(jet_file(small_case(), 10e-3), jet_file(small_case("[output]\nreport = false\n"), 10e-3));
+  Case other = small_case();
+  other.valve.supply_pressure *= 1.01;
+  EXPECT_NE(jet_file(small_case(), 10e-3), jet_file(other, 10e-3));
+  EXPECT_NE(jet_file(small_case(), 10e-3), jet_file(small_case(), 9e-3));
+}
+
+TEST(JetModel, RefusesAnOrificeThatIsNotTheValves) {
+  Case c = small_case();
+  c.valve.orifice_diameter = 2e-3;
+  EXPECT_THROW(JetModel{c}, InputError);
+  c = small_case();
+  c.boundary[4].patches.clear();
+  EXPECT_THROW(JetModel{c}, InputError);
+}
+
+// Both leave the orifice with the momentum of the exact nozzle, whatever the case calls y.
+TEST(JetModel, CompressibleAndIncompressibleLeaveWithTheSameMomentum) {
+  Case c = small_case();
+  const double exact = nozzle_thrust(nozzle_exit(Gas{}, 801325.0, 298.15, 101325.0), 1.0, 1.8e-3);
+  for (const Case& each : {c, incompressible_jet(c)}) {
+    JetModel jet(each);
+    while (jet.time() < 0.09e-3) jet.step();
+    EXPECT_NEAR(jet.orifice_flow().momentum / exact, 1.0, 0.03) << word(each.flow.solver);
+  }
+}
+
+TEST(Sweep, FindsWhereASquareReachesAValue) {
+  const std::vector<double> u{600, 700, 900}, p{3.6e3, 4.9e3, 8.1e3};
+  EXPECT_NEAR(where_square_reaches(u, p, 6.4e3), 800, 1e-9);
+  EXPECT_NEAR(where_square_reaches(u, p, 10e3), 1000, 1e-9);
+  EXPECT_NEAR(where_square_reaches(u, p, 2.5e3), 500, 1e-9);
+}
+
+TEST_F(Measured, IsReadInItsUnitsAndCompared) {
+  const MeasuredCurve m =
+      read_measured(file("# pitot\nz [mm],p [kPa]\n10, 2\n20, 4\n90, 1\n"), Dimension::length);
+  ASSERT_EQ(m.x.size(), 3u);
+  EXPECT_DOUBLE_EQ(m.x[1], 0.02);
+  EXPECT_DOUBLE_EQ(m.y[1], 4000.0);
+  const std::vector<double> x{0.0, 0.01, 0.05}, y{0.0, 2100.0, 6100.0};
+  const MeasuredError e = compare_measured(m, x, y);
+  EXPECT_EQ(e.points, 2);  // the third lies beyond the computed stretch
+  EXPECT_NEAR(e.mean, -350.0, 1e-9);
+  EXPECT_NEAR(e.largest, 800.0, 1e-9);
+  EXPECT_DOUBLE_EQ(e.scale, 4000.0);
+}
+
+TEST_F(Measured, BadRowsAreRefusedWithTheirLine) {
+  const auto refusal = [&](const std::string& text) {
+    try {
+      read_measured(file(text), Dimension::length);
+    } catch (const InputError& e) {
+      return std::string(e.what());
+    }
+    return std::string();
+  };
+  EXPECT_THAT(refusal("z,p\n1,2\n"), HasSubstr("measured.csv:1: the head of a column lacks its unit"));
+  EXPECT_THAT(refusal("z [ms],p [kPa]\n"), HasSubstr("lacks its unit"));
+  EXPECT_THAT(refusal("z [mm],p [kPa]\n1,2\n3\n"), HasSubstr("measured.csv:3: a value is missing"));
+  EXPECT_THAT(refusal("z [mm],p [kPa]\n3,2\n1,2\n"), HasSubstr("do not increase"));
+  EXPECT_THAT(refusal("z [mm],p [kPa]\n"), HasSubstr("no measured values"));
+}
+
+}  // namespace
