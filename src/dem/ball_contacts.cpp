@@ -10,6 +10,7 @@
 namespace ejecta {
 namespace {
 
+constexpr int kAhead = 8;    // groups of pairs whose geometry is known before their forces are computed
 constexpr int kBlock = 128;  // groups of eight pairs one thread takes at a time; sums are kept by block
 
 /// Lanes at any address.
@@ -39,31 +40,45 @@ EJECTA_INLINE void transpose(Lanes r[8]) {
 
 struct BallLanes {
   Triple<Lanes> centre, velocity, spin;
-  Lanes radius, inverse_mass, material;
+  Lanes radius, inverse_mass;
 };
 
-EJECTA_INLINE BallLanes load_balls(const BallRow* rows, const int* index) {
-  Lanes first[8], second[8];
-  for (int n = 0; n < 8; ++n) {
-    const double* row = &rows[index[n]].x;
-    first[n] = *reinterpret_cast<const LooseLanes*>(row);
-    second[n] = *reinterpret_cast<const LooseLanes*>(row + 8);
+/// Four numbers of each of eight rows, as four columns.
+EJECTA_INLINE void load_columns(const BallRow* rows, const int* index, int from, Lanes out[4]) {
+  constexpr Index low1{0, 8, 2, 10, 4, 12, 6, 14}, high1{1, 9, 3, 11, 5, 13, 7, 15};
+  constexpr Index low2{0, 1, 8, 9, 4, 5, 12, 13}, high2{2, 3, 10, 11, 6, 7, 14, 15};
+  Lanes r[4];
+  for (int n = 0; n < 4; ++n) {
+    const Vec4 lower = *reinterpret_cast<const LooseVec4*>(&rows[index[n]].x + from);
+    const Vec4 upper = *reinterpret_cast<const LooseVec4*>(&rows[index[n + 4]].x + from);
+    r[n] = __builtin_shufflevector(lower, upper, 0, 1, 2, 3, 4, 5, 6, 7);
   }
-  transpose(first);
-  transpose(second);
-  return {{first[0], first[1], first[2]},
-          {first[4], first[5], first[6]},
-          {second[0], second[1], second[2]},
-          first[3],
-          first[7],
-          second[4]};
+  const Lanes s0 = __builtin_shuffle(r[0], r[1], low1), s1 = __builtin_shuffle(r[0], r[1], high1);
+  const Lanes s2 = __builtin_shuffle(r[2], r[3], low1), s3 = __builtin_shuffle(r[2], r[3], high1);
+  out[0] = __builtin_shuffle(s0, s2, low2);
+  out[1] = __builtin_shuffle(s1, s3, low2);
+  out[2] = __builtin_shuffle(s0, s2, high2);
+  out[3] = __builtin_shuffle(s1, s3, high2);
 }
 
-PairConstants<Lanes> load_constants(const Materials& materials, const BallLanes& a, const BallLanes& b) {
+EJECTA_INLINE BallLanes load_balls(const BallRow* rows, const int* index) {
+  Lanes place[4], velocity[4], spin[4];
+  load_columns(rows, index, 0, place);
+  load_columns(rows, index, 4, velocity);
+  load_columns(rows, index, 8, spin);
+  return {{place[0], place[1], place[2]},
+          {velocity[0], velocity[1], velocity[2]},
+          {spin[0], spin[1], spin[2]},
+          place[3],
+          velocity[3]};
+}
+
+PairConstants<Lanes> load_constants(const Materials& materials, const BallRow* balls, const BallRow* others,
+                                    const int* a, const int* b) {
   PairConstants<Lanes> p;
   for (int n = 0; n < kLanes; ++n) {
     const PairConstants<double>& c =
-        materials.pair(static_cast<int>(a.material[n]), static_cast<int>(b.material[n]));
+        materials.pair(static_cast<int>(balls[a[n]].material), static_cast<int>(others[b[n]].material));
     p.youngs[n] = c.youngs;
     p.shear[n] = c.shear;
     p.stiffness[n] = c.stiffness;
@@ -94,73 +109,101 @@ EJECTA_INLINE void store3(std::vector<double>* v, std::size_t n, const Triple<La
   lanes_at(v[2], n) = t.z;
 }
 
-EJECTA_INLINE bool none(const Index& mask) {
-  std::int64_t any = 0;
-  for (int n = 0; n < kLanes; ++n) any |= mask[n];
-  return any == 0;
+EJECTA_INLINE bool none(Index mask) {
+  mask |= __builtin_shuffle(mask, Index{4, 5, 6, 7, 0, 1, 2, 3});
+  mask |= __builtin_shuffle(mask, Index{2, 3, 0, 1, 6, 7, 4, 5});
+  return (mask[0] | mask[1]) == 0;
 }
 
 }  // namespace
 
-template <class Law, bool Rolling>
-void BallContacts::compute_all(const Parts& parts, const Materials& materials, double dt) {
-  const BallRow* balls = parts.rows().data();
-  const int groups = static_cast<int>(a_.size()) / kLanes;
+template <class Law, bool Rolling, bool Planes>
+void BallContacts::compute_groups(const Parts& parts, const Materials& materials, double dt) {
+  const BallRow *balls = parts.rows().data(), *others = Planes ? planes_.data() : balls;
+  const std::size_t from = Planes ? at(planes_from_) : 0, to = Planes ? a_.size() : at(planes_from_);
+  const int groups = static_cast<int>((to - from) / kLanes);
   const bool one_material = materials.count() == 1, allow_tension = materials.allow_tension();
+  constexpr int same[kLanes] = {};
+  const BallRow any;
   PairConstants<Lanes> constants;
-  if (one_material) constants = load_constants(materials, BallLanes{}, BallLanes{});
+  if (one_material) constants = load_constants(materials, &any, &any, same, same);
 
-  for_each_block(groups, kBlock, [&](int, int begin, int end) {
-    for (int group = begin; group < end; ++group) {
-      const std::size_t n = at(group) * kLanes;
-      const BallLanes a = load_balls(balls, a_.data() + n), b = load_balls(balls, b_.data() + n);
+  // Where and how fast they touch, for a few groups, then the law: roots and divisions take long, and short
+  // loops let the processor work on several groups at once.
+  const auto meet = [&](std::size_t n) __attribute__((always_inline)) {
+    const BallLanes a = load_balls(balls, a_.data() + n), b = load_balls(others, b_.data() + n);
+    Contact<Lanes> c;
+    Triple<Lanes> arms;
+    if constexpr (Planes) {
+      c.normal = b.centre;
+      c.overlap = a.radius + b.radius - dot(b.centre, a.centre);
+      c.radius = a.radius;
+      c.mass = (Lanes{} + 1.0) / a.inverse_mass;
+      arms = (a.radius - 0.5 * c.overlap) * a.spin;
+    } else {
       const Triple<Lanes> apart = a.centre - b.centre;
       const Lanes distance = root(dot(apart, apart));
-      const Lanes overlap = a.radius + b.radius - distance;
-      const Index touching = overlap > Lanes{};
-      Lanes out[8] = {};
-      if (none(touching)) {
-        store3(history_, n, {});
-        if constexpr (Rolling) store3(history_ + 3, n, {});
-        if constexpr (Rolling) store3(moments_, n, {});
-      } else {
-        Contact<Lanes> c;
-        c.normal = (Lanes{} + 1.0) / distance * apart;
-        c.overlap = overlap;
-        // Divisions take longest: one for both.
-        const Lanes radii = a.radius + b.radius, masses = a.inverse_mass + b.inverse_mass;
-        const Lanes both = (Lanes{} + 1.0) / (radii * masses);
-        c.radius = a.radius * b.radius * masses * both;
-        c.mass = radii * both;
-        const Lanes arm_a = a.radius - 0.5 * overlap, arm_b = b.radius - 0.5 * overlap;
-        // Velocity at the contact point: arms are -arm_a n from a and +arm_b n from b.
-        c.velocity = a.velocity - b.velocity - cross(arm_a * a.spin + arm_b * b.spin, c.normal);
-        const PairConstants<Lanes> p = one_material ? constants : load_constants(materials, a, b);
-        Triple<Lanes> slip = load3(history_, n);
-        const ContactForce<Lanes> f = contact_force<Law>(c, p, allow_tension, dt, slip);
-        store3(history_, n, select(touching, slip));
-        const Triple<Lanes> force = select(touching, f.force), turning = cross(c.normal, force);
-        if constexpr (Rolling) {
-          Triple<Lanes> roll = load3(history_ + 3, n);
-          const Triple<Lanes> spin = a.spin - b.spin;
-          const Triple<Lanes> moment = select(touching, rolling_moment(c, p, f, spin, dt, roll));
-          store3(history_ + 3, n, select(touching, roll));
-          store3(moments_, n, moment);
-        }
-        const Lanes zero{};
-        out[0] = force.x;
-        out[1] = force.y;
-        out[2] = force.z;
-        out[3] = touching ? 0.5 * overlap : zero;
-        out[4] = touching ? turning.x : zero;
-        out[5] = touching ? turning.y : zero;
-        out[6] = touching ? turning.z : zero;
-        out[7] = touching ? f.elastic_normal + f.elastic_tangential : zero;
-        transpose(out);
+      const Lanes radii = a.radius + b.radius, masses = a.inverse_mass + b.inverse_mass;
+      // Divisions take longest: one for three.
+      const Lanes part = (Lanes{} + 1.0) / (radii * masses * distance), both = part * distance;
+      c.normal = (part * radii * masses) * apart;
+      c.overlap = radii - distance;
+      c.radius = a.radius * b.radius * masses * both;
+      c.mass = radii * both;
+      arms = (a.radius - 0.5 * c.overlap) * a.spin + (b.radius - 0.5 * c.overlap) * b.spin;
+    }
+    // Velocity at the contact point: arms are -arm_a n from a and +arm_b n from b.
+    c.velocity = a.velocity - b.velocity - cross(arms, c.normal);
+    return c;
+  };
+  const auto push = [&](std::size_t n, const Contact<Lanes>& c) __attribute__((always_inline)) {
+    const Index touching = c.overlap > Lanes{};
+    Lanes out[8] = {};
+    if (none(touching)) {
+      store3(history_, n, {});
+      if constexpr (Rolling) store3(history_ + 3, n, {});
+      if constexpr (Rolling) store3(moments_, n, {});
+    } else {
+      const PairConstants<Lanes> p =
+          one_material ? constants : load_constants(materials, balls, others, a_.data() + n, b_.data() + n);
+      Triple<Lanes> slip = load3(history_, n);
+      const ContactForce<Lanes> f = contact_force<Law>(c, p, allow_tension, dt, slip);
+      store3(history_, n, select(touching, slip));
+      const Triple<Lanes> force = select(touching, f.force), turning = cross(c.normal, force);
+      if constexpr (Rolling) {
+        const BallLanes a = load_balls(balls, a_.data() + n), b = load_balls(others, b_.data() + n);
+        Triple<Lanes> roll = load3(history_ + 3, n);
+        const Triple<Lanes> moment = select(touching, rolling_moment(c, p, f, a.spin - b.spin, dt, roll));
+        store3(history_ + 3, n, select(touching, roll));
+        store3(moments_, n, moment);
       }
-      for (int k = 0; k < kLanes; ++k) *reinterpret_cast<LooseLanes*>(&rows_[n + at(k)].fx) = out[k];
+      const Lanes zero{};
+      out[0] = force.x;
+      out[1] = force.y;
+      out[2] = force.z;
+      out[3] = touching ? 0.5 * c.overlap : zero;
+      out[4] = touching ? turning.x : zero;
+      out[5] = touching ? turning.y : zero;
+      out[6] = touching ? turning.z : zero;
+      out[7] = touching ? f.elastic_normal + f.elastic_tangential : zero;
+      transpose(out);
+    }
+    for (int k = 0; k < kLanes; ++k) *reinterpret_cast<LooseLanes*>(&rows_[n + at(k)].fx) = out[k];
+  };
+  for_each_block(groups, kBlock, [&](int, int begin, int end) {
+    Contact<Lanes> c[kAhead];
+    for (int first = begin; first < end; first += kAhead) {
+      const int count = std::min(kAhead, end - first);
+      for (int g = 0; g < count; ++g) c[g] = meet(from + at(first + g) * kLanes);
+      for (int g = 0; g < count; ++g) push(from + at(first + g) * kLanes, c[g]);
     }
   });
+}
+
+template <class Law, bool Rolling>
+void BallContacts::compute_all(const Parts& parts, const Materials& materials, double dt) {
+  compute_groups<Law, Rolling, false>(parts, materials, dt);
+  compute_groups<Law, Rolling, true>(parts, materials, dt);
 }
 
 void BallContacts::compute(const Parts& parts, const Materials& materials, double dt) {
@@ -173,92 +216,18 @@ void BallContacts::compute(const Parts& parts, const Materials& materials, doubl
              : compute_all<HertzMindlin, false>(parts, materials, dt);
 }
 
-void BallContacts::index_pairs(int balls) {
-  count_ = static_cast<int>(a_.size());
-  const std::size_t padded = (a_.size() + kLanes - 1) / kLanes * kLanes;
-  first_.assign(at(balls) + 2, 0);
-  for (std::size_t n = 0; n < a_.size(); ++n)
-    for (const int ball : {a_[n], b_[n]}) ++first_[at(ball) + 1];
-  for (std::size_t n = 1; n < first_.size(); ++n) first_[n] += first_[n - 1];
-  entries_.resize(2 * a_.size());
-  cursor_.assign(first_.begin(), first_.end());
-  for (std::size_t n = 0; n < a_.size(); ++n) {
-    entries_[at(cursor_[at(a_[n])]++)] = static_cast<int>(2 * n);
-    entries_[at(cursor_[at(b_[n])]++)] = static_cast<int>(2 * n + 1);
+double BallContacts::wall_power() const {
+  double power = 0.0;
+  for (std::size_t n = at(planes_from_); n < a_.size(); ++n) {
+    const BallRow& wall = planes_[at(b_[n])];
+    power += rows_[n].fx * wall.vx + rows_[n].fy * wall.vy + rows_[n].fz * wall.vz;
   }
-  a_.resize(padded, balls);
-  b_.resize(padded, balls);
-  rows_.assign(padded, PairRow{});
-  for (auto& m : moments_) m.assign(padded, 0.0);
-}
-
-void BallContacts::set_pairs(const std::vector<std::pair<int, int>>& pairs, int balls) {
-  std::vector<int> a(pairs.size()), b(pairs.size());
-  std::vector<double> history[6];
-  const std::size_t padded = (pairs.size() + kLanes - 1) / kLanes * kLanes;
-  for (auto& h : history) h.assign(padded, 0.0);
-  std::size_t old = 0;
-  for (std::size_t n = 0; n < pairs.size(); ++n) {
-    a[n] = pairs[n].first;
-    b[n] = pairs[n].second;
-    while (old < at(count_) && std::pair(a_[old], b_[old]) < pairs[n]) ++old;
-    if (old < at(count_) && std::pair(a_[old], b_[old]) == pairs[n])
-      for (int k = 0; k < 6; ++k) history[k][n] = history_[k][old];
-  }
-  a_ = std::move(a);
-  b_ = std::move(b);
-  for (int k = 0; k < 6; ++k) history_[k] = std::move(history[k]);
-  index_pairs(balls);
+  return power;
 }
 
 double BallContacts::elastic() const {
   return std::accumulate(rows_.begin(), rows_.end(), 0.0,
                          [](double sum, const PairRow& r) { return sum + r.elastic; });
-}
-
-void BallContacts::rename(std::span<const int> names, int balls) {
-  std::size_t kept = 0;
-  for (std::size_t n = 0; n < at(count_); ++n) {
-    const int a = names[at(a_[n])], b = names[at(b_[n])];
-    if (a < 0 || b < 0) continue;
-    a_[kept] = a;
-    b_[kept] = b;
-    for (auto& h : history_) h[kept] = h[n];
-    ++kept;
-  }
-  a_.resize(kept);
-  b_.resize(kept);
-  for (auto& h : history_) {
-    h.resize(kept);
-    h.resize((kept + kLanes - 1) / kLanes * kLanes, 0.0);
-  }
-  index_pairs(balls);
-}
-
-void BallContacts::save(std::vector<double>& out) const {
-  const std::size_t head = out.size();
-  out.push_back(0);
-  for (std::size_t n = 0; n < at(count_); ++n) {
-    if (std::all_of(history_, history_ + 6, [&](const auto& h) { return h[n] == 0.0; })) continue;
-    out[head] += 1;
-    out.push_back(a_[n]);
-    out.push_back(b_[n]);
-    for (const auto& h : history_) out.push_back(h[n]);
-  }
-}
-
-const double* BallContacts::load(const double* in, int balls) {
-  const int count = static_cast<int>(*in++);
-  a_.clear();
-  b_.clear();
-  for (auto& h : history_) h.assign((at(count) + kLanes - 1) / kLanes * kLanes, 0.0);
-  for (int n = 0; n < count; ++n) {
-    a_.push_back(static_cast<int>(*in++));
-    b_.push_back(static_cast<int>(*in++));
-    for (auto& h : history_) h[at(n)] = *in++;
-  }
-  index_pairs(balls);
-  return in;
 }
 
 }  // namespace ejecta

@@ -7,10 +7,12 @@
 #include "dem/materials.hpp"
 #include "dem/parts.hpp"
 #include "dem/sphere_state.hpp"
+#include "dem/walls.hpp"
 
 namespace ejecta {
 
-/// Contacts between balls: spheres and the spheres of multi-sphere bodies. Eight pairs at a time.
+/// Contacts of balls (spheres and the spheres of multi-sphere bodies) with each other and with planes. Eight
+/// pairs at a time.
 class BallContacts {
  public:
   /// What a pair (a, b) does: one cache line.
@@ -21,35 +23,47 @@ class BallContacts {
     double elastic = 0;             ///< J
   };
 
-  /// Candidate pairs of balls (a < b), sorted. Histories of pairs that were there before are kept.
-  void set_pairs(const std::vector<std::pair<int, int>>& pairs, int balls);
+  /// Candidate pairs, sorted: balls (a < b), and balls with walls that are planes. Histories of pairs that
+  /// were there before are kept.
+  using Pairs = std::span<const std::pair<int, int>>;
+  void set_pairs(Pairs balls, Pairs planes, std::span<const Wall> walls, int ball_count);
   /// Evaluates the law on every pair and moves the histories over dt.
   void compute(const Parts& parts, const Materials& materials, double dt);
   /// Adds the force and the torque about the ball's centre that act on it. Returns its largest half overlap,
   /// m.
   double gather(int ball, double radius, Vec4& force, Vec4& torque) const;
 
-  double elastic() const;  ///< J
+  double elastic() const;     ///< J
+  double wall_power() const;  ///< W, done by the moving planes on the balls
 
-  int pair_count() const { return count_; }
-  std::pair<int, int> pair(int n) const { return {a_[at(n)], b_[at(n)]}; }
+  int pair_count() const { return static_cast<int>(a_.size()); }  ///< with those that pad the lanes
+  /// Ball a; ball b, or -1 - n for wall n.
+  std::pair<int, int> pair(int n) const { return {a_[at(n)], n < planes_from_ ? b_[at(n)] : -1 - b_[at(n)]}; }
   const PairRow& row(int n) const { return rows_[at(n)]; }
 
   /// Gives balls their new indices (-1: gone, with its pairs).
   void rename(std::span<const int> names, int balls);
-  /// a, b and history of each pair that has one.
+  /// Both sides and history of each pair that has one.
   void save(std::vector<double>& out) const;
   const double* load(const double* in, int balls);
 
  private:
   static std::size_t at(int n) { return static_cast<std::size_t>(n); }
+  void arrange(Pairs balls, Pairs planes, int ball_count);
   void index_pairs(int balls);
   template <class Law, bool Rolling>
   void compute_all(const Parts& parts, const Materials& materials, double dt);
+  template <class Law, bool Rolling, bool Planes>
+  void compute_groups(const Parts& parts, const Materials& materials, double dt);
 
-  int count_ = 0;                   // without the padding to whole lanes
-  std::vector<int> a_, b_;          // padded with the ball that touches nothing
-  std::vector<double> history_[6];  // slip x, y, z and roll x, y, z of each pair
+  // Pairs of balls, padded to whole lanes with the ball that touches nothing; then those with planes, with
+  // the wall as b, padded likewise.
+  std::vector<int> a_, b_;
+  int planes_from_ = 0;
+  std::vector<BallRow> planes_{BallRow{}};  // normal, offset, velocity, material; the last touches nothing
+  std::vector<double> history_[6];          // slip x, y, z and roll x, y, z of each pair
+  std::vector<int> last_a_, last_b_;        // before the pairs were set anew
+  std::vector<double> last_history_[6];
   std::vector<PairRow> rows_;
   std::vector<double> moments_[3];  // N m, rolling resistance on a
   std::vector<int> cursor_;
@@ -58,23 +72,23 @@ class BallContacts {
 };
 
 inline double BallContacts::gather(int ball, double radius, Vec4& force, Vec4& torque) const {
+  constexpr Vec4 signs[2] = {{1, 1, 1, 0}, {-1, -1, -1, 0}};
   double deepest = 0.0;
   Vec4 f{}, t{};  // in registers: the rows might alias what the arguments refer to
-  for (int k = first_[at(ball)]; k < first_[at(ball) + 1]; ++k) {
+  const int from = first_[at(ball)], to = first_[at(ball) + 1];
+  for (int k = from; k < to; ++k) {
     const int entry = entries_[at(k)];
-    const double sign = 1 - 2 * (entry & 1);
     const PairRow& row = rows_[at(entry >> 1)];
-    const Vec4 push = *reinterpret_cast<const LooseVec4*>(&row.fx);
-    const Vec4 turning = *reinterpret_cast<const LooseVec4*>(&row.gx);
-    f += sign * push;
+    f += signs[entry & 1] * *reinterpret_cast<const LooseVec4*>(&row.fx);
+    t -= (radius - row.half_overlap) * *reinterpret_cast<const LooseVec4*>(&row.gx);
     deepest = std::max(deepest, row.half_overlap);
-    t -= (radius - row.half_overlap) * turning;
-    if (rolling_) {
-      const std::size_t n = at(entry >> 1);
-      t += sign * Vec4{moments_[0][n], moments_[1][n], moments_[2][n], 0.0};
-    }
   }
-  f[3] = t[3] = 0.0;
+  if (rolling_)
+    for (int k = from; k < to; ++k) {
+      const std::size_t n = at(entries_[at(k)] >> 1);
+      t += signs[entries_[at(k)] & 1] * Vec4{moments_[0][n], moments_[1][n], moments_[2][n], 0.0};
+    }
+  t[3] = 0.0;
   force += f;
   torque += t;
   return deepest;

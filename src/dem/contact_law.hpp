@@ -96,13 +96,13 @@ EJECTA_INLINE ContactForce<T> contact_force(const Contact<T>& c, const PairConst
   slip = slip - dot(slip, c.normal) * c.normal + (T{} + dt) * sliding;
   const T drag = dashpot * p.drag;
   Triple<T> tangential = (T{} - s.tangential) * slip - drag * sliding;
-  const T size = root(dot(tangential, tangential));
+  const T squared = dot(tangential, tangential), size = root(squared);
   const T limit = p.friction * larger(normal, T{});
-  // Divisions take longest: one for the cut and the slip that goes with it.
-  const T both = (T{} + 1.0) / (size * s.tangential);
-  const T cut = size > limit ? limit * s.tangential * both : T{} + 1.0;
+  // Divisions take longest: one for the cut and the slip that goes with it, which need not wait for the root.
+  const T both = (T{} + 1.0) / (squared * s.tangential);
+  const T cut = size > limit ? limit * size * s.tangential * both : T{} + 1.0;
   tangential = cut * tangential;
-  const Triple<T> cut_slip = (T{} - size * both) * tangential;
+  const Triple<T> cut_slip = (T{} - squared * both) * tangential;
   slip = {size > limit ? cut_slip.x : slip.x, size > limit ? cut_slip.y : slip.y,
           size > limit ? cut_slip.z : slip.z};
 

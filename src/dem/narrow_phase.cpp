@@ -10,15 +10,6 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-Touch touch_ball_plane(const BallRow& ball, const Wall& wall) {
-  Touch t;
-  t.normal = wall.normal;
-  t.overlap = std::max(ball.radius - (wall.normal.dot(ball.centre()) - wall.offset), 0.0);
-  t.radius = t.size = ball.radius;
-  t.point = ball.centre() - (ball.radius - 0.5 * t.overlap) * t.normal;
-  return t;
-}
-
 /// `solid` in axes that `rotation` and `origin` take to the world.
 Touch touch_ball_polytope(const BallRow& ball, const Polytope& solid, const Mat3& rotation,
                           const Vec3& origin) {
@@ -83,7 +74,6 @@ Touch find_touch(const SolidPair& pair, const Parts& parts, std::span<const Body
   const auto body_of = [&](int n) -> const Body& { return bodies[static_cast<std::size_t>(n)]; };
   if (pair.a.kind == PartKind::ball) {
     const BallRow& ball = parts.row(pair.a.index);
-    if (pair.b.kind == PartKind::wall_plane) return touch_ball_plane(ball, wall_of(pair.b));
     if (pair.b.kind == PartKind::wall_solid) {
       const Wall& wall = wall_of(pair.b);
       const std::size_t n = static_cast<std::size_t>(pair.b.solid);

@@ -38,32 +38,58 @@ void NeighbourSearch::sort_into_cells(const std::vector<Item>& items, double edg
   for (std::size_t c = 1; c < first_.size(); ++c) first_[c] += first_[c - 1];
   cursor_.assign(first_.begin(), first_.end());
   sorted_.resize(items.size());
-  for (std::size_t n = 0; n < items.size(); ++n)
+  for (std::size_t n = 0; n < items.size(); ++n) {
+    const Item& item = items[n];
     sorted_[static_cast<std::size_t>(cursor_[static_cast<std::size_t>(cell_of_[n])]++)] = {
-        items[n], static_cast<int>(n)};
+        item.centre.x(), item.centre.y(),     item.centre.z(), item.radius,
+        item.body,       static_cast<int>(n), cell_of_[n]};
+  }
 }
 
-void NeighbourSearch::neighbours_of(const std::vector<Item>& items, int i, double reach,
-                                    std::vector<std::pair<int, int>>& out) const {
-  const Item& item = items[static_cast<std::size_t>(i)];
-  const int cell = cell_of_[static_cast<std::size_t>(i)];
+std::size_t NeighbourSearch::neighbours_after(int p, double reach, std::vector<int>& near) const {
+  const Sorted& item = sorted_[static_cast<std::size_t>(p)];
   const int nx = lattice_.n[0], ny = lattice_.n[1], nz = lattice_.n[2];
-  const int cx = cell % nx, cy = cell / nx % ny, cz = cell / (nx * ny);
-  const std::size_t start = out.size();
-  for (int z = std::max(cz - 1, 0); z <= std::min(cz + 1, nz - 1); ++z)
-    for (int y = std::max(cy - 1, 0); y <= std::min(cy + 1, ny - 1); ++y) {
-      const std::size_t row = static_cast<std::size_t>(z * ny + y) * static_cast<std::size_t>(nx);
-      const int from = first_[row + static_cast<std::size_t>(std::max(cx - 1, 0))];
-      const int to = first_[row + static_cast<std::size_t>(std::min(cx + 1, nx - 1)) + 1];
-      for (int n = from; n < to; ++n) {
-        const Sorted& other = sorted_[static_cast<std::size_t>(n)];
-        const double limit = item.radius + other.item.radius + reach;
-        if (other.index > i && (other.item.centre - item.centre).squaredNorm() < limit * limit &&
-            other.item.body != item.body)
-          out.emplace_back(i, other.index);
-      }
+  const int cx = item.cell % nx, cy = item.cell / nx % ny, cz = item.cell / (nx * ny);
+  const int left = std::max(cx - 1, 0), right = std::min(cx + 1, nx - 1);
+  std::size_t count = 0;
+  // A miss costs less than a branch that goes either way: every candidate is written, the near ones count.
+  const auto look = [&](int from, int to) {
+    if (near.size() < count + static_cast<std::size_t>(to - from))
+      near.resize(2 * count + static_cast<std::size_t>(to - from));
+    int* out = near.data();
+    for (int q = from; q < to; ++q) {
+      const Sorted& other = sorted_[static_cast<std::size_t>(q)];
+      const double dx = other.x - item.x, dy = other.y - item.y, dz = other.z - item.z;
+      const double limit = item.radius + other.radius + reach;
+      out[count] = q;
+      count += (dx * dx + dy * dy + dz * dz < limit * limit) & (other.body != item.body);
     }
-  std::sort(out.begin() + static_cast<std::ptrdiff_t>(start), out.end());
+  };
+  const auto row = [&](int y, int z) { return first_.data() + (z * ny + y) * nx; };
+  look(p + 1, row(cy, cz)[right + 1]);
+  if (cy + 1 < ny) look(row(cy + 1, cz)[left], row(cy + 1, cz)[right + 1]);
+  if (cz + 1 < nz)
+    for (int y = std::max(cy - 1, 0); y <= std::min(cy + 1, ny - 1); ++y)
+      look(row(y, cz + 1)[left], row(y, cz + 1)[right + 1]);
+  return count;
+}
+
+/// All that the blocks found, by first and second item: counted, dealt out, and each item's few put in order.
+void NeighbourSearch::sort_pairs(int items) {
+  cursor_.assign(static_cast<std::size_t>(items) + 1, 0);
+  for (const Found& found : found_)
+    for (const auto& pair : found.pairs) ++cursor_[static_cast<std::size_t>(pair.first) + 1];
+  for (std::size_t n = 1; n < cursor_.size(); ++n) cursor_[n] += cursor_[n - 1];
+  pairs_.resize(static_cast<std::size_t>(cursor_.back()));
+  for (const Found& found : found_)
+    for (const auto& pair : found.pairs)
+      pairs_[static_cast<std::size_t>(cursor_[static_cast<std::size_t>(pair.first)]++)] = pair;
+  auto begin = pairs_.begin();
+  for (int n = 0; n < items; ++n) {
+    const auto end = pairs_.begin() + cursor_[static_cast<std::size_t>(n)];
+    std::sort(begin, end);
+    begin = end;
+  }
 }
 
 const std::vector<std::pair<int, int>>& NeighbourSearch::find(const std::vector<Item>& items, double reach) {
@@ -75,15 +101,19 @@ const std::vector<std::pair<int, int>>& NeighbourSearch::find(const std::vector<
 
   const int count = static_cast<int>(items.size()), blocks = block_count(count, kBlock);
   if (found_.size() < static_cast<std::size_t>(blocks)) found_.resize(static_cast<std::size_t>(blocks));
+  for (Found& found : found_) found.pairs.clear();
   for_each_block(count, kBlock, [&](int b, int begin, int end) {
-    auto& out = found_[static_cast<std::size_t>(b)];
-    out.clear();
-    for (int i = begin; i < end; ++i) neighbours_of(items, i, reach, out);
+    Found& out = found_[static_cast<std::size_t>(b)];
+    for (int p = begin; p < end; ++p) {
+      const int i = sorted_[static_cast<std::size_t>(p)].index;
+      const std::size_t near = neighbours_after(p, reach, out.near);
+      for (std::size_t k = 0; k < near; ++k) {
+        const int j = sorted_[static_cast<std::size_t>(out.near[k])].index;
+        out.pairs.emplace_back(std::min(i, j), std::max(i, j));
+      }
+    }
   });
-  for (int b = 0; b < blocks; ++b) {
-    const auto& out = found_[static_cast<std::size_t>(b)];
-    pairs_.insert(pairs_.end(), out.begin(), out.end());
-  }
+  sort_pairs(count);
   return pairs_;
 }
 

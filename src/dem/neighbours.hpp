@@ -6,8 +6,8 @@
 
 namespace ejecta {
 
-/// Finds pairs of balls nearer than a distance in O(n): sorts them into cells of a lattice and looks into the
-/// 27 cells around each. Keeps its buffers.
+/// Finds pairs of balls nearer than a distance in O(n): sorts them into cells of a lattice and looks from
+/// each into the rest of its cell and the 13 neighbouring cells that come after it. Keeps its buffers.
 class NeighbourSearch {
  public:
   struct Item {
@@ -21,8 +21,9 @@ class NeighbourSearch {
 
  private:
   void sort_into_cells(const std::vector<Item>& items, double edge);
-  void neighbours_of(const std::vector<Item>& items, int i, double reach,
-                     std::vector<std::pair<int, int>>& out) const;
+  /// Positions (in the order of cells) of the neighbours that come after position p, into `near`; how many.
+  std::size_t neighbours_after(int p, double reach, std::vector<int>& near) const;
+  void sort_pairs(int items);
 
   struct Lattice {
     Vec3 origin{0, 0, 0};
@@ -30,12 +31,16 @@ class NeighbourSearch {
     int n[3] = {1, 1, 1};
   } lattice_;
   struct Sorted {
-    Item item;
-    int index = 0;
+    double x = 0, y = 0, z = 0, radius = 0;
+    int body = 0, index = 0, cell = 0;
+  };
+  struct Found {
+    std::vector<int> near;
+    std::vector<std::pair<int, int>> pairs;
   };
   std::vector<int> cell_of_, first_, cursor_;
-  std::vector<Sorted> sorted_;                           // by cell, so that a search reads on and on
-  std::vector<std::vector<std::pair<int, int>>> found_;  // by block of items
+  std::vector<Sorted> sorted_;  // by cell, so that a search reads on and on
+  std::vector<Found> found_;    // by block of items
   std::vector<std::pair<int, int>> pairs_;
 };
 

@@ -14,13 +14,8 @@
 namespace ejecta {
 namespace {
 
-constexpr int kBlock = 512;             // bodies one thread moves at a time; sums are kept by block
-constexpr double kSlowest = 0.1;        // m/s, impact speed the step is made for at least
-constexpr int kStepsBetweenLists = 20;  // aimed at when the skin is chosen
-
-Vec4 load_torque(std::size_t n, std::span<const Load> loads) {
-  return loads.empty() ? Vec4{} : vec4(loads[n].torque);
-}
+constexpr int kBlock = 512;       // bodies one thread moves at a time; sums are kept by block
+constexpr double kSlowest = 0.1;  // m/s, impact speed the step is made for at least
 
 void note_peak(ContactPeaks& p, double overlap, double force_squared, double dt) {
   if (!(force_squared > 0)) return;
@@ -48,14 +43,21 @@ double Particles::stable_dt() const {
   return contact_.time_step_fraction * time;
 }
 
+/// Velocity Verlet (Swope et al. 1982, J. Chem. Phys. 76:637): half a kick, drift, new forces, half a kick.
+/// The kick that ends a sub-step and the one that begins the next are one pass over the bodies.
 void Particles::advance(double dt, std::span<const Load> loads) {
   if (!(dt > 0)) return;
   const int steps = std::max(1, static_cast<int>(std::ceil(dt / stable_dt() * (1 - 1e-12))));
-  const double start = time_;
+  const double start = time_, step = dt / steps;
   pack_spheres();
-  for (int n = 0; n < steps; ++n) {
-    substep(dt / steps, loads);
-    time_ = start + dt * (n + 1) / steps;
+  add_work(0.5 * step);
+  move_bodies(step, loads, false, true);
+  for (int n = 1; n <= steps; ++n) {
+    find_contacts(step);
+    collect_solids();
+    time_ = start + dt * n / steps;
+    move_bodies(step, loads, true, n < steps);
+    add_work(n < steps ? step : 0.5 * step);
   }
   unpack_spheres();
 }
@@ -71,15 +73,16 @@ void Particles::release(std::size_t n) {
 
 void Particles::pack_spheres() {
   spheres_.resize(bodies_.size());
+  pushed_.resize(bodies_.size());
   packed_.resize(bodies_.size());
   for (std::size_t n = 0; n < bodies_.size(); ++n) {
     const Body& b = bodies_[n];
     if (moves(b)) release(n);
     packed_[n] = b.motion == Motion::free && moves(b) && parts_.is_sphere(static_cast<int>(n));
     if (packed_[n])
-      spheres_[n] = {vec4(b.position), vec4(b.velocity), vec4(momentum_[n]),
-                     vec4(force_[n]),  vec4(torque_[n]), vec4(listed_at_[n]),
-                     Vec4{},           1 / b.mass,       1 / b.inertia[0]};
+      spheres_[n] = {vec4(b.velocity) + Vec4{0, 0, 0, 1 / b.mass},
+                     vec4(momentum_[n]) + Vec4{0, 0, 0, 1 / b.inertia[0]},
+                     __builtin_convertvector(vec4(b.position - listed_at_[n]), Vec4f), Vec4f{}};
   }
 }
 
@@ -88,14 +91,12 @@ void Particles::unpack_spheres() {
     if (!packed_[n]) continue;
     const SphereState& s = spheres_[n];
     Body& b = bodies_[n];
-    b.position = vec3(s.position);
+    b.position = parts_.sphere_row(static_cast<int>(n)).centre();
+    listed_at_[n] = b.position - vec3(__builtin_convertvector(s.moved, Vec4));
     b.velocity = vec3(s.velocity);
-    b.angular_velocity = s.inverse_inertia * vec3(s.momentum);
-    turn(b.orientation, vec3(s.turn));
     momentum_[n] = vec3(s.momentum);
-    force_[n] = vec3(s.force);
-    torque_[n] = vec3(s.torque);
-    listed_at_[n] = vec3(s.listed_at);
+    b.angular_velocity = s.inverse_inertia() * momentum_[n];
+    turn(b.orientation, vec3(__builtin_convertvector(s.turn, Vec4)));
   }
 }
 
@@ -109,35 +110,69 @@ Vec3 Particles::torque_on(std::size_t n, std::span<const Load> loads) const {
   return loads.empty() ? torque_[n] : Vec3(torque_[n] + loads[n].torque);
 }
 
-/// Velocity Verlet (Swope et al. 1982, J. Chem. Phys. 76:637): half a kick, drift, new forces, half a kick.
-void Particles::substep(double dt, std::span<const Load> loads) {
-  add_work(0.5 * dt);
-  drift(dt, loads);
-  find_contacts(dt);
-  kick(dt, loads);
-}
-
-void Particles::drift(double dt, std::span<const Load> loads) {
+void Particles::move_bodies(double dt, std::span<const Load> loads, bool kick, bool drift) {
   const int count = static_cast<int>(bodies_.size());
   const Vec4 gravity = vec4(gravity_);
   block_moved_.resize(static_cast<std::size_t>(block_count(count, kBlock)));
+  block_work_.resize(block_moved_.size());
   for_each_block(count, kBlock, [&](int block, int begin, int end) {
-    double spheres = 0.0, others = 0.0;  // farthest moves: m2, m
+    Work work;
+    Vec4 by_contacts{};
+    Farthest<float> spheres;  // m2
+    Farthest<double> others;  // m
     for (int i = begin; i < end; ++i) {
       const std::size_t n = static_cast<std::size_t>(i);
       if (packed_[n]) {
         SphereState& s = spheres_[n];
-        const Vec4 push = loads.empty() ? gravity : gravity + s.inverse_mass * vec4(loads[n].force);
-        const double moved = drift_sphere(s, parts_.sphere_row(i), push, load_torque(n, loads), dt);
-        if (!(moved <= spheres)) spheres = moved;  // keeps NaN
+        BallRow& row = parts_.sphere_row(i);
+        Push push{gravity, {}, {}, {}};
+        if (!loads.empty()) {
+          push.acceleration += s.inverse_mass() * vec4(loads[n].force);
+          push.twist = vec4(loads[n].torque);
+        }
+        // Forces lie in memory only where solids push and between calls of advance().
+        if (!kick || pushed_[n]) {
+          push.force = vec4(force_[n]);
+          push.torque = vec4(torque_[n]);
+          force_[n].setZero();
+          torque_[n].setZero();
+          pushed_[n] = 0;
+        }
+        if (kick) {
+          const double half = balls_.gather(parts_.first_ball(i), row.radius, push.force, push.torque);
+          note_peak(peaks_[n], 2 * half, dot(push.force, push.force), dt);
+          by_contacts += kick_sphere(s, push, dt);
+          if (!loads.empty())
+            work.from_outside += loads[n].force.dot(vec3(s.velocity)) +
+                                 loads[n].torque.dot(s.inverse_inertia() * vec3(s.momentum));
+        }
+        if (drift) {
+          spheres.note(drift_sphere(s, row, push, dt));
+        } else {
+          force_[n] = vec3(push.force);
+          torque_[n] = vec3(push.torque);
+        }
       } else {
-        const double moved = drift_body(i, loads, dt);
-        if (!(moved <= others)) others = moved;
+        if (kick) kick_body(i, loads, dt, work);
+        if (drift) others.note(drift_body(i, loads, dt));
       }
     }
-    const double moved = std::sqrt(spheres);
-    block_moved_[static_cast<std::size_t>(block)] = moved <= others ? others : moved;
+    work.into_contacts -= (by_contacts[0] + by_contacts[1]) + by_contacts[2];
+    others.note(std::sqrt(spheres.second));
+    others.note(std::sqrt(spheres.first));
+    others.sum += spheres.sum;
+    block_moved_[static_cast<std::size_t>(block)] = others;
+    block_work_[static_cast<std::size_t>(block)] = work;
   });
+  if (!kick) return;
+  // With velocities at the whole step, half of this power over dt before it and half after is exactly the
+  // change of kinetic energy.
+  const double by_walls = balls_.wall_power() + solids_.wall_power();
+  power_ = {by_walls, by_walls};
+  for (const Work& work : block_work_) {
+    power_.into_contacts += work.into_contacts;
+    power_.from_outside += work.from_outside;
+  }
 }
 
 /// Returns how far a part of the body may have moved since the listing, m.
@@ -170,11 +205,14 @@ double Particles::drift_body(int index, std::span<const Load> loads, double dt) 
 }
 
 void Particles::find_contacts(double dt) {
-  double moved = 0.0;
-  for (const double block : block_moved_)
-    if (!(block <= moved)) moved = block;
-  if (!(moved < std::numeric_limits<double>::infinity())) throw_diverged();
-  if (relist_ || 2 * moved > skin_) list_candidates(dt);
+  Farthest<double> moved;
+  for (const Farthest<double>& block : block_moved_) {
+    moved.note(block.second);
+    moved.note(block.first);
+    moved.sum += block.sum;
+  }
+  if (!(moved.sum < std::numeric_limits<double>::infinity())) throw_diverged();
+  if (relist_ || moved.first + moved.second > skin_) list_candidates(dt);
   balls_.compute(parts_, materials_, dt);
   solids_.compute(parts_, bodies_, walls_, materials_, velocity_, spin_, dt);
 }
@@ -182,7 +220,8 @@ void Particles::find_contacts(double dt) {
 void Particles::throw_diverged() const {
   for (std::size_t n = 0; n < bodies_.size(); ++n) {
     const Body& b = bodies_[n];
-    if (!(packed_[n] ? vec3(spheres_[n].position) : b.position).allFinite() ||
+    if (!(packed_[n] ? parts_.row(parts_.first_ball(static_cast<int>(n))).centre() : b.position)
+             .allFinite() ||
         !b.orientation.coeffs().allFinite())
       throw DivergedError(
           fmt::format("the motion of body \"{}\" became no number at t = {:.6g} s; try a smaller "
@@ -193,70 +232,38 @@ void Particles::throw_diverged() const {
 }
 
 void Particles::list_candidates(double dt) {
-  double fastest = 0.0, smallest = std::numeric_limits<double>::infinity();
+  double fastest = 0.0;
   for (std::size_t n = 0; n < bodies_.size(); ++n) {
     if (packed_[n]) {
       SphereState& s = spheres_[n];
-      s.listed_at = s.position;
-      fastest = std::max(fastest, std::sqrt(dot(s.velocity, s.velocity)));
+      s.moved = Vec4f{};
+      fastest = std::max(fastest, vec3(s.velocity).norm());
     } else {
       listed_at_[n] = bodies_[n].position;
       turned_[n] = 0.0;
       fastest = std::max(fastest, velocity_[n].norm() + spin_[n].norm() * parts_.arm(static_cast<int>(n)));
     }
-    smallest = std::min(smallest, bodies_[n].shape.bounding_radius());
   }
-  skin_ = std::clamp(2 * kStepsBetweenLists * fastest * dt, 0.1 * smallest, smallest);
+  // A wider skin costs a look at more pairs in every step, in proportion; a narrower one new lists more
+  // often, in inverse proportion. The cheapest, with the factor measured on settling spheres, is
+  skin_ = std::clamp(2.8 * std::sqrt(fastest * dt * smallest_), 0.01 * smallest_, smallest_);
   relist_ = false;
-  Candidates candidates = search_.find(parts_, bodies_, walls_, skin_);
-  balls_.set_pairs(candidates.balls, parts_.ball_count());
-  solids_.set_pairs(std::move(candidates.solids));
+  search_.find(parts_, bodies_, walls_, skin_);
+  balls_.set_pairs(search_.balls(), search_.planes(), walls_, parts_.ball_count());
+  solids_.set_pairs(search_.solids());
 }
 
-void Particles::kick(double dt, std::span<const Load> loads) {
-  const int count = static_cast<int>(bodies_.size());
-  const Vec4 gravity = vec4(gravity_);
-  block_work_.resize(static_cast<std::size_t>(block_count(count, kBlock)));
+/// Forces of contacts in which walls and polytopes take part, body by body in the order of the contacts.
+void Particles::collect_solids() {
   solids_.gather([&](int body, const Vec3& force, const Vec3& moment, const Touch& touch) {
     const std::size_t n = static_cast<std::size_t>(body);
     const Vec3& point = touch.point;
     peaks_[n].overlap = std::max(peaks_[n].overlap, touch.thickness > 0 ? touch.thickness : touch.overlap);
-    if (packed_[n]) {
-      spheres_[n].force += vec4(force);
-      spheres_[n].torque += vec4((point - vec3(spheres_[n].position)).cross(force) + moment);
-    } else {
-      force_[n] += force;
-      torque_[n] += (point - bodies_[n].position).cross(force) + moment;
-    }
+    const Vec3 centre = packed_[n] ? parts_.sphere_row(body).centre() : bodies_[n].position;
+    force_[n] += force;
+    torque_[n] += (point - centre).cross(force) + moment;
+    pushed_[n] = 1;
   });
-  // With velocities at the whole step, half of this power over dt before it and half after is exactly the
-  // change of kinetic energy.
-  for_each_block(count, kBlock, [&](int block, int begin, int end) {
-    Work work;
-    for (int i = begin; i < end; ++i) {
-      const std::size_t n = static_cast<std::size_t>(i);
-      if (packed_[n]) {
-        SphereState& s = spheres_[n];
-        const int ball = parts_.first_ball(i);
-        const double half = balls_.gather(ball, parts_.row(ball).radius, s.force, s.torque);
-        note_peak(peaks_[n], 2 * half, dot(s.force, s.force), dt);
-        const Vec4 push = loads.empty() ? gravity : gravity + s.inverse_mass * vec4(loads[n].force);
-        work.into_contacts -= kick_sphere(s, push, load_torque(n, loads), dt);
-        if (!loads.empty())
-          work.from_outside += loads[n].force.dot(vec3(s.velocity)) +
-                               loads[n].torque.dot(s.inverse_inertia * vec3(s.momentum));
-      } else {
-        kick_body(i, loads, dt, work);
-      }
-    }
-    block_work_[static_cast<std::size_t>(block)] = work;
-  });
-  power_ = {solids_.wall_power(), solids_.wall_power()};
-  for (const Work& work : block_work_) {
-    power_.into_contacts += work.into_contacts;
-    power_.from_outside += work.from_outside;
-  }
-  add_work(0.5 * dt);
 }
 
 void Particles::kick_body(int index, std::span<const Load> loads, double dt, Work& work) {
@@ -271,7 +278,7 @@ void Particles::kick_body(int index, std::span<const Load> loads, double dt, Wor
     torque_[n] += vec3(torque) + (row.centre() - b.position).cross(vec3(force));
   }
   note_peak(peaks_[n], 2 * deepest, force_[n].squaredNorm(), dt);
-  if (!moves(b)) return;
+  if (b.motion == Motion::fixed || launches_[n].waiting) return;
   const bool pushed = b.motion == Motion::free;
   if (pushed) {
     b.velocity += 0.5 * dt * acceleration(n, loads);
@@ -288,37 +295,6 @@ void Particles::kick_body(int index, std::span<const Load> loads, double dt, Wor
 void Particles::add_work(double dt) {
   contact_work_ += dt * power_.into_contacts;
   outer_work_ += dt * power_.from_outside;
-}
-
-DemEnergy Particles::energy() const {
-  DemEnergy e;
-  for (const Body& b : bodies_) {
-    e.kinetic += b.kinetic_energy();
-    if (b.motion == Motion::free) e.potential -= b.mass * gravity_.dot(b.position);
-  }
-  e.elastic = balls_.elastic() + solids_.elastic();
-  e.dissipated = contact_work_ - e.elastic;
-  e.work = outer_work_;
-  return e;
-}
-
-std::vector<ContactRecord> Particles::contacts() const {
-  std::vector<ContactRecord> records;
-  for (int n = 0; n < balls_.pair_count(); ++n) {
-    const auto& row = balls_.row(n);
-    if (!(row.half_overlap > 0)) continue;
-    const auto [a, b] = balls_.pair(n);
-    const BallRow &ball = parts_.row(a), &other = parts_.row(b);
-    const Vec3 normal = (ball.centre() - other.centre()).normalized();
-    records.push_back({parts_.body_of_ball(a), parts_.body_of_ball(b),
-                       ball.centre() - (ball.radius - row.half_overlap) * normal, normal,
-                       Vec3(row.fx, row.fy, row.fz), 2 * row.half_overlap});
-  }
-  for (const SolidPair& p : solids_.pairs())
-    if (p.touch.overlap > 0)
-      records.push_back({p.body_a, p.body_b >= 0 ? p.body_b : -1 - p.b.index, p.touch.point, p.touch.normal,
-                         p.force, p.touch.overlap});
-  return records;
 }
 
 }  // namespace ejecta

@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <span>
 #include <vector>
 
@@ -76,9 +77,9 @@ class Particles {
   void restore(std::span<const double> state);
 
  private:
-  void substep(double dt, std::span<const Load> loads);
-  void drift(double dt, std::span<const Load> loads);
-  void kick(double dt, std::span<const Load> loads);
+  /// The half of a kick that ends a sub-step, and the half and the drift that begin the next.
+  void move_bodies(double dt, std::span<const Load> loads, bool kick, bool drift);
+  void collect_solids();
   struct Work {
     double into_contacts = 0.0, from_outside = 0.0;  // W
   };
@@ -104,24 +105,36 @@ class Particles {
   std::vector<Vec3> momentum_;         // angular, world, kg m2/s
   std::vector<Vec3> force_, torque_;   // of contacts at the last sub-step
   std::vector<Vec3> velocity_, spin_;  // as the contact laws see them: extrapolated to the whole step
-  std::vector<SphereState> spheres_;   // of bodies that are free spheres, while advance() runs
+  std::vector<SphereState> spheres_;   // of bodies that are free spheres, in advance()
   std::vector<ContactPeaks> peaks_;
   struct Launch {
     bool waiting = false;
     Vec3 velocity{0, 0, 0}, spin{0, 0, 0};
   };
   std::vector<Launch> launches_;  // of bodies that rest until they are released
-  std::vector<char> packed_;      // which those are
+  std::vector<char> packed_;      // which bodies spheres_ holds
+  std::vector<char> pushed_;      // by solids: force_ and torque_ are not zero
   std::vector<Vec3> listed_at_;   // positions for which candidates were listed
   std::vector<double> turned_;    // m, no part of a body has moved farther by its turning since
-  std::vector<double> block_moved_;
+  /// The two largest of some lengths (or squares): no two bodies have come nearer by more than their sum.
+  template <class T>
+  struct Farthest {
+    T first = 0, second = 0, sum = 0;  // the sum tells NaN
+    void note(T value) {
+      second = std::max(second, std::min(first, value));
+      first = std::max(first, value);
+      sum += value;
+    }
+  };
+  std::vector<Farthest<double>> block_moved_;
   std::vector<Work> block_work_;
   Work power_;  // at the last sub-step
   Parts parts_;
   CandidateSearch search_;
   BallContacts balls_;
   SolidContacts solids_;
-  double skin_ = 0.0;  // m, candidates are pairs with gap < skin
+  double skin_ = 0.0;      // m, candidates are pairs with gap < skin
+  double smallest_ = 0.0;  // m, of the bounding radii
   bool relist_ = true;
   double contact_work_ = 0.0, outer_work_ = 0.0;  // J
 };

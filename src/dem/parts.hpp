@@ -6,12 +6,11 @@
 
 namespace ejecta {
 
-/// A ball of a body in the world, one cache line pair: all that a contact of balls reads.
-struct alignas(64) BallRow {
+/// A ball of a body in the world: all that a contact of balls reads, in three registers.
+struct alignas(32) BallRow {
   double x = 0, y = 0, z = 0, radius = 0;           // m
   double vx = 0, vy = 0, vz = 0, inverse_mass = 0;  // m/s of its centre; 1/kg of its body (0: immovable)
-  double wx = 0, wy = 0, wz = 0, unused = 0;        // rad/s
-  double material = 0, padding[3] = {0, 0, 0};
+  double wx = 0, wy = 0, wz = 0, material = 0;      // rad/s
 
   Vec3 centre() const { return {x, y, z}; }
   Vec3 velocity() const { return {vx, vy, vz}; }

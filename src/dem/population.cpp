@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <limits>
 
 #include "base/error.hpp"
 #include "dem/particles.hpp"
@@ -35,6 +36,8 @@ int Particles::add(Body body) {
   for (auto* v : {&force_, &torque_, &velocity_, &spin_, &listed_at_}) v->push_back(Vec3(0, 0, 0));
   turned_.push_back(0.0);
   parts_.add(body, index);
+  const double radius = body.shape.bounding_radius();
+  smallest_ = bodies_.empty() ? radius : std::min(smallest_, radius);
   bodies_.push_back(std::move(body));
   relist_ = true;
   return index;
@@ -64,7 +67,11 @@ void Particles::remove(int index) {
   peaks_.erase(peaks_.begin() + index);
   launches_.erase(launches_.begin() + index);
   parts_.clear();
-  for (std::size_t n = 0; n < bodies_.size(); ++n) parts_.add(bodies_[n], static_cast<int>(n));
+  smallest_ = std::numeric_limits<double>::infinity();
+  for (std::size_t n = 0; n < bodies_.size(); ++n) {
+    parts_.add(bodies_[n], static_cast<int>(n));
+    smallest_ = std::min(smallest_, bodies_[n].shape.bounding_radius());
+  }
   balls_.rename(ball_names, parts_.ball_count());
   relist_ = true;
 }
@@ -89,7 +96,7 @@ void Particles::place(int index, const Vec3& position, const Quat& orientation, 
 }
 
 void Particles::require_apart() {
-  const Candidates near = search_.find(parts_, bodies_, walls_, 0.0);
+  search_.find(parts_, bodies_, walls_, 0.0);
   double worst = 0.0;
   std::string message;
   const auto report = [&](double overlap, double size, int a, const std::string& other, const Vec3& normal) {
@@ -103,21 +110,60 @@ void Particles::require_apart() {
   const auto name = [&](int body) {
     return fmt::format("body \"{}\"", bodies_[static_cast<std::size_t>(body)].name);
   };
-  for (const auto& [i, j] : near.balls) {
+  for (const auto& [i, j] : search_.balls()) {
     const BallRow &a = parts_.row(i), &b = parts_.row(j);
     const Vec3 apart = a.centre() - b.centre();
     report(a.radius + b.radius - apart.norm(), std::min(a.radius, b.radius), parts_.body_of_ball(i),
            name(parts_.body_of_ball(j)), apart.normalized());
   }
-  for (const SolidPair& p : near.solids) {
+  const auto wall_name = [&](int wall) {
+    return fmt::format("wall \"{}\"", walls_[static_cast<std::size_t>(wall)].name);
+  };
+  for (const auto& [i, w] : search_.planes()) {
+    const BallRow& ball = parts_.row(i);
+    const Wall& wall = walls_[static_cast<std::size_t>(w)];
+    report(ball.radius + wall.offset - wall.normal.dot(ball.centre()), ball.radius, parts_.body_of_ball(i),
+           wall_name(w), wall.normal);
+  }
+  for (const SolidPair& p : search_.solids()) {
     const Touch t = find_touch(p, parts_, bodies_, walls_);
     if (!(t.overlap > 0)) continue;
-    const std::string other =
-        p.body_b >= 0 ? name(p.body_b)
-                      : fmt::format("wall \"{}\"", walls_[static_cast<std::size_t>(p.b.index)].name);
+    const std::string other = p.body_b >= 0 ? name(p.body_b) : wall_name(p.b.index);
     report(t.thickness > 0 ? t.thickness : t.overlap, t.size, p.body_a, other, t.normal);
   }
   if (worst > 0) throw InputError(message);
+}
+
+DemEnergy Particles::energy() const {
+  DemEnergy e;
+  for (const Body& b : bodies_) {
+    e.kinetic += b.kinetic_energy();
+    if (b.motion == Motion::free) e.potential -= b.mass * gravity_.dot(b.position);
+  }
+  e.elastic = balls_.elastic() + solids_.elastic();
+  e.dissipated = contact_work_ - e.elastic;
+  e.work = outer_work_;
+  return e;
+}
+
+std::vector<ContactRecord> Particles::contacts() const {
+  std::vector<ContactRecord> records;
+  for (int n = 0; n < balls_.pair_count(); ++n) {
+    const auto& row = balls_.row(n);
+    if (!(row.half_overlap > 0)) continue;
+    const auto [a, b] = balls_.pair(n);
+    const BallRow& ball = parts_.row(a);
+    const Vec3 normal = b < 0 ? walls_[static_cast<std::size_t>(-1 - b)].normal
+                              : Vec3((ball.centre() - parts_.row(b).centre()).normalized());
+    records.push_back({parts_.body_of_ball(a), b < 0 ? b : parts_.body_of_ball(b),
+                       ball.centre() - (ball.radius - row.half_overlap) * normal, normal,
+                       Vec3(row.fx, row.fy, row.fz), 2 * row.half_overlap});
+  }
+  for (const SolidPair& p : solids_.pairs())
+    if (p.touch.overlap > 0)
+      records.push_back({p.body_a, p.body_b >= 0 ? p.body_b : -1 - p.b.index, p.touch.point, p.touch.normal,
+                         p.force, p.touch.overlap});
+  return records;
 }
 
 std::vector<double> Particles::state() const {

@@ -44,14 +44,14 @@ void apply_law(SolidPair& pair, const Side& a, const Side& b, const Materials& m
 
 }  // namespace
 
-void SolidContacts::set_pairs(std::vector<SolidPair>&& pairs) {
+void SolidContacts::set_pairs(std::vector<SolidPair>& pairs) {
   std::size_t old = 0;
   const auto key = [](const SolidPair& p) { return std::pair(p.a, p.b); };
   for (SolidPair& p : pairs) {
     while (old < pairs_.size() && key(pairs_[old]) < key(p)) ++old;
     if (old < pairs_.size() && key(pairs_[old]) == key(p)) p.history = pairs_[old].history;
   }
-  pairs_ = std::move(pairs);
+  pairs_.swap(pairs);
 }
 
 void SolidContacts::compute(const Parts& parts, std::span<const Body> bodies, std::span<const Wall> walls,

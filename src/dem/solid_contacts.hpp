@@ -52,8 +52,9 @@ struct SolidPair {
 
 class SolidContacts {
  public:
-  /// Candidates, sorted by (a, b); histories of pairs that were there before are kept.
-  void set_pairs(std::vector<SolidPair>&& pairs);
+  /// Candidates, sorted by (a, b), in exchange for the old ones; histories of pairs that were there before
+  /// are kept.
+  void set_pairs(std::vector<SolidPair>& pairs);
   /// `velocity`, `spin`: of the bodies, m/s and rad/s.
   void compute(const Parts& parts, std::span<const Body> bodies, std::span<const Wall> walls,
                const Materials& materials, std::span<const Vec3> velocity, std::span<const Vec3> spin,
