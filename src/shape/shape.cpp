@@ -16,6 +16,8 @@ template <class... F>
 struct Overloaded : F... {
   using F::operator()...;
 };
+template <class... F>
+Overloaded(F...) -> Overloaded<F...>;
 
 double area_balls(const std::vector<Ball>& balls, const Vec3& direction) {
   const Vec3 d = direction.normalized(), u = d.unitOrthogonal(), v = d.cross(u);

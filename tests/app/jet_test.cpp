@@ -10,6 +10,7 @@
 #include "app/jet_sweep.hpp"
 #include "base/error.hpp"
 #include "case/load.hpp"
+#include "case/words.hpp"
 
 using namespace ejecta;
 using testing::HasSubstr;
