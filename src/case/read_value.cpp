@@ -63,7 +63,7 @@ class ValueReader {
                          .what = what,
                          .expected = expectation(key_),
                          .nearest = closest,
-                         .example = key_.name + " = " + example(key_),
+                         .example = key_.name + " = " + example_,
                          .place = node.place});
     return false;
   }
@@ -167,6 +167,7 @@ class ValueReader {
 
   const Node& root_;
   const Key& key_;
+  const std::string example_ = example(key_);  // while the key still holds its default
   const std::string& path_;
   double ambient_;
   std::vector<Problem>& problems_;
