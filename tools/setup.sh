@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
-# Installs what the build needs from Debian's packages, if anything is missing.
+# tools/setup.sh [PACKAGE...]: installs what the build needs from Debian's packages, and the packages named, if
+# anything is missing.
 set -euo pipefail
 packages=(build-essential cmake ninja-build ccache git python3 libeigen3-dev libfmt-dev libtoml11-dev libcli11-dev
-          nlohmann-json3-dev libhdf5-dev zlib1g-dev libgtest-dev libgmock-dev librapidcheck-dev libbenchmark-dev nodejs npm)
+          nlohmann-json3-dev libhdf5-dev zlib1g-dev libgtest-dev libgmock-dev librapidcheck-dev libbenchmark-dev nodejs npm "$@")
 missing=()
 for p in "${packages[@]}"; do
   [[ $p == nodejs || $p == npm ]] && command -v "${p/nodejs/node}" > /dev/null && continue

@@ -23,9 +23,9 @@ struct Range3 {
 int thread_count();
 void set_thread_count(int threads);
 
-/// kernel(i) for i in [i0, i1) in SIMD on this thread, whole registers at a time: up to kRealLanes - 1 entries past
-/// i1 are computed too. Rows of a Field, of Metrics and of scratch sized by whole registers have room for
-/// them; what lands there is padding or ghosts that are filled again before they are read.
+/// kernel(i) for i in [i0, i1) in SIMD on this thread, whole registers at a time: up to kRealLanes - 1
+/// entries past i1 are computed too. Rows of a Field, of Metrics and of scratch sized by whole registers have
+/// room for them; what lands there is padding or ghosts that are filled again before they are read.
 template <class Kernel>
 inline void for_each_lane(int i0, int i1, const Kernel& kernel) {
   if (i1 == i0 + 1) return kernel(i0);  // a column of faces; one cell in x
@@ -41,7 +41,8 @@ void for_each_cell(const Range3& r, const Kernel& kernel) {
 #pragma omp parallel for schedule(static)
   for (int k = r.k0; k < r.k1; ++k)
     for (int j = r.j0; j < r.j1; ++j)
-      for_each_lane(r.i0, r.i1, [&](int i) __attribute__((always_inline)) { kernel(i, j, k); });
+      for_each_lane(
+          r.i0, r.i1, [&](int i) __attribute__((always_inline)) { kernel(i, j, k); });
 }
 
 /// kernel(n) for n in [0, count), e.g. one plane, one row, one body at a time.
@@ -153,8 +154,8 @@ std::array<Real, kN> reduce_max(const Range3& r, const Kernel& kernel) {
 /// The largest kernel(i, j, k), at least 0.
 template <class Kernel>
 Real reduce_max(const Range3& r, const Kernel& kernel) {
-  return reduce_max<1>(r, [&](int i, int j, int k, Real* v)
-                           __attribute__((always_inline)) { v[0] = kernel(i, j, k); })[0];
+  return reduce_max<1>(
+      r, [&](int i, int j, int k, Real* v) __attribute__((always_inline)) { v[0] = kernel(i, j, k); })[0];
 }
 
 }  // namespace ejecta

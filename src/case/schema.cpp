@@ -58,7 +58,8 @@ std::vector<Section> sections(Case& c) {
            table("jet", "The jet that enters through a boundary of type \"jet\"", c.jet),
            list("material", "Solid materials", c.materials),
            list("material_pair", "Overrides for the contact of two materials", c.material_pairs),
-           table("contact", "How bodies touch", c.contact), list("body", "Bodies", c.bodies),
+           table("contact", "How bodies touch", c.contact),
+           list("body", "Bodies", c.bodies),
            table("launch", "Flight from the belt to the jet", c.launch, &c.launch.enabled),
            list("wall", "Walls that bodies meet", c.walls),
            table("splitter", "The dividing plate", c.splitter, &c.splitter.enabled),
@@ -68,7 +69,8 @@ std::vector<Section> sections(Case& c) {
            list("slice", "Planes recorded in fields/", c.slices),
            list("measured", "Measurements that `ejecta jet` compares with", c.measured),
            table("output", "What is written, and how often", c.output),
-           table("checkpoint", "When the state is saved for --resume", c.checkpoint), exact,
+           table("checkpoint", "When the state is saved for --resume", c.checkpoint),
+           exact,
            list("expect", "What `ejecta validate` compares with result.json", c.expects),
            table("convergence", "Repetition on finer grids", c.convergence)})
     all.push_back(std::move(s));

@@ -81,8 +81,9 @@ Boundaries::Side Boundaries::side(const FieldView& f, int face) const {
   return s;
 }
 
-/// ghost(field, layer, a, b, cell, inner) -> value of a ghost; a and b clamped to the face, `cell` the offset of
-/// the boundary cell, `inner` the value as far inside as the ghost is outside (periodic: on the other side).
+/// ghost(field, layer, a, b, cell, inner) -> value of a ghost; a and b clamped to the face, `cell` the offset
+/// of the boundary cell, `inner` the value as far inside as the ghost is outside (periodic: on the other
+/// side).
 template <std::size_t kN, class Ghost>
 void Boundaries::fill_side(const std::array<FieldView, kN>& fields, const Side& s, bool periodic,
                            const Ghost& ghost) const {
@@ -93,7 +94,8 @@ void Boundaries::fill_side(const std::array<FieldView, kN>& fields, const Side& 
     for (std::size_t c = 0; c < kN; ++c)
       for (int layer = 0; layer < kGhosts; ++layer) {
         Real* origin = fields[c].origin;
-        const std::ptrdiff_t out = (layer + 1) * s.outward, in = -(periodic ? n - 1 - layer : layer) * s.outward;
+        const std::ptrdiff_t out = (layer + 1) * s.outward,
+                             in = -(periodic ? n - 1 - layer : layer) * s.outward;
         for (int a = -s.ghosts_a; a < s.na + s.ghosts_a; ++a) {
           const std::ptrdiff_t cell = start + a * s.step_a;
           origin[cell + out] = ghost(c, layer, std::clamp(a, 0, s.na - 1), b, cell, origin[cell + in]);
@@ -111,8 +113,7 @@ constexpr auto kCopy = [](std::size_t, int, int, int, std::ptrdiff_t, Real inner
 
 void Boundaries::fill_zero_gradient(FieldView f) const {
   for (int face = 0; face < 6; ++face)
-    if (grid_.active(face / 2))
-      fill_side<1>({f}, side(f, face), kind(face) == BoundaryKind::periodic, kCopy);
+    if (grid_.active(face / 2)) fill_side<1>({f}, side(f, face), kind(face) == BoundaryKind::periodic, kCopy);
 }
 
 void Boundaries::fill_velocity(std::array<FieldView, 3> u, const std::array<FieldView, 3>& q) const {

@@ -56,11 +56,12 @@ class Boundaries {
   void fill_turbulence(FieldView k, FieldView second, const std::array<FieldView, 3>& q) const;
   /// Ghosts by zero gradient (periodic where periodic).
   void fill_zero_gradient(FieldView f) const;
-  /// Sets q on the boundary faces: states, zero on mirrors, extrapolated u_star with the pressure force of the half
-  /// cell on open ones.
-  void fill_face_velocity(std::array<FieldView, 3> q, const std::array<FieldView, 3>& u_star, ConstFieldView p,
-                          Real dt) const;
-  /// Sets q only where the boundary prescribes it (not on open or periodic ones): a correction must not move it.
+  /// Sets q on the boundary faces: states, zero on mirrors, extrapolated u_star with the pressure force of
+  /// the half cell on open ones.
+  void fill_face_velocity(std::array<FieldView, 3> q, const std::array<FieldView, 3>& u_star,
+                          ConstFieldView p, Real dt) const;
+  /// Sets q only where the boundary prescribes it (not on open or periodic ones): a correction must not move
+  /// it.
   void prescribe_face_velocity(std::array<FieldView, 3> q) const;
 
  private:

@@ -15,8 +15,10 @@ namespace ejecta {
 ///   face.template flux<D>(j, k, i0, i1, out)   writes out[n][i], n < kN: flux times area through the lower
 ///                                              D-face of cell (i, j, k), for i in [i0, i1)
 ///   update(j, k, balance)                      balance[n][i] = sum of what leaves cell (i, j, k)
-///   edge(D, side, j, k, row)                   sees the fluxes through the boundaries of the box: along x the
-///                                              faces 0 and nx of the row, else nx faces; side 0 lower, 1 upper
+///   edge(D, side, j, k, row)                   sees the fluxes through the boundaries of the box: along x
+///   the
+///                                              faces 0 and nx of the row, else nx faces; side 0 lower, 1
+///                                              upper
 ///
 /// Fluxes must be pure functions of their arguments: chunks of planes run in parallel and recompute the plane
 /// they share, so any number of threads gives the same bits.
@@ -27,7 +29,8 @@ void sweep(const Grid& grid, const Face& face, const Update& update, const Edge&
   constexpr std::integral_constant<int, 2> z{};
   const int nx = grid.nx(), ny = grid.ny(), nz = grid.nz();
   const bool in_x = grid.active(0), in_y = grid.active(1), in_z = grid.active(2);
-  const int ld = (nx + 1 + kRealLanes) / kRealLanes * kRealLanes;  // one lane more is read than a row of faces has
+  const int ld =
+      (nx + 1 + kRealLanes) / kRealLanes * kRealLanes;  // one lane more is read than a row of faces has
   for_each_chunk(nz, [&](int k0, int k1) {
     const std::size_t rows_needed = static_cast<std::size_t>(kN) * static_cast<std::size_t>(2 * ny + 5);
     Real* scratch = thread_scratch(rows_needed * static_cast<std::size_t>(ld), 1);
@@ -71,10 +74,10 @@ void sweep(const Grid& grid, const Face& face, const Update& update, const Edge&
         if (in_z) face.template flux<2>(j, k + 1, 0, nx, high_z);
         if (in_z && k + 1 == nz) edge(z, 1, j, nz, high_z);
         for (int n = 0; n < kN; ++n)
-          for_each_lane(0, nx, [b = balance[n], x0 = through_x[n], y0 = low_y[n], y1 = high_y[n],
-                                z0 = low_z[n], z1 = high_z[n]](int i) {
-            b[i] = x0[i + 1] - x0[i] + (y1[i] - y0[i]) + (z1[i] - z0[i]);
-          });
+          for_each_lane(
+              0, nx,
+              [b = balance[n], x0 = through_x[n], y0 = low_y[n], y1 = high_y[n], z0 = low_z[n],
+               z1 = high_z[n]](int i) { b[i] = x0[i + 1] - x0[i] + (y1[i] - y0[i]) + (z1[i] - z0[i]); });
         update(j, k, balance);
         swap_rows(low_y, high_y);
       }
@@ -85,7 +88,7 @@ void sweep(const Grid& grid, const Face& face, const Update& update, const Edge&
 
 template <int kN, class Face, class Update>
 void sweep(const Grid& grid, const Face& face, const Update& update) {
-  sweep<kN>(grid, face, update, [](auto, int, int, int, Real* const (&)[kN]) {});
+  sweep<kN>(grid, face, update, [](auto, int, int, int, Real* const(&)[kN]) {});
 }
 
 }  // namespace ejecta

@@ -42,7 +42,8 @@ void Splitter::watch(std::span<const Body> bodies, std::span<const Vec3> before,
     v.clearance = passed ? from.z() + share * (to.z() - from.z()) - edge_.z() : approach_[b].clearance;
     v.ejected = passed && v.clearance > 0.0;
     v.time = time - (1.0 - share) * dt;
-    const Approach free = approach_[b].velocity > 0.0 ? approach_[b] : Approach{body.velocity.x(), v.clearance};
+    const Approach free =
+        approach_[b].velocity > 0.0 ? approach_[b] : Approach{body.velocity.x(), v.clearance};
     v.velocity_margin = free.clearance * free.velocity / spec_.distance;
     verdicts_[b] = v;
   }

@@ -11,10 +11,10 @@ namespace ejecta {
 /// What became of a body.
 struct Verdict {
   bool ejected = false;
-  double clearance = 0.0;  ///< m, of the centre above the edge as it passes (negative: below)
-  double velocity_margin = 0.0;  ///< m/s: gain of vertical velocity at the jet beyond what just clears the edge,
-                                 ///< from the flight before the plate could touch the body
-  double time = 0.0;  ///< s, of passing
+  double clearance = 0.0;        ///< m, of the centre above the edge as it passes (negative: below)
+  double velocity_margin = 0.0;  ///< m/s: gain of vertical velocity at the jet beyond what just clears the
+                                 ///< edge, from the flight before the plate could touch the body
+  double time = 0.0;             ///< s, of passing
 };
 
 /// The dividing plate: its edge lies `distance` behind the jet's axis and `height` above the path of the body

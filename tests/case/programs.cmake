@@ -9,3 +9,5 @@ set_tests_properties(house.includes PROPERTIES LABELS fast)
 add_test(NAME house.includes_refused
          COMMAND ${Python3_EXECUTABLE} ${PROJECT_SOURCE_DIR}/tests/case/check_includes_test.py)
 set_tests_properties(house.includes_refused PROPERTIES LABELS fast)
+add_test(NAME house.format COMMAND ${PROJECT_SOURCE_DIR}/tools/check_format.sh)
+set_tests_properties(house.format PROPERTIES LABELS fast SKIP_RETURN_CODE 77)

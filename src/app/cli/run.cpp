@@ -69,8 +69,10 @@ void add_jet(CLI::App& app, Action& action) {
                     "Instead: the settled jets of jet.sweep_pressures and jet.sweep_velocities, and the "
                     "equivalent velocity of each pressure");
   command->footer(
-      "Examples:\n  ejecta jet cases/paper/jet-700kPa.toml\n  ejecta jet cases/paper/jet-700kPa.toml --sweep");
-  command->callback([o, &action] { action = [o] { return jet_case(load_and_warn(o->input, o->run.quiet), o->run); }; });
+      "Examples:\n  ejecta jet cases/paper/jet-700kPa.toml\n  ejecta jet cases/paper/jet-700kPa.toml "
+      "--sweep");
+  command->callback(
+      [o, &action] { action = [o] { return jet_case(load_and_warn(o->input, o->run.quiet), o->run); }; });
 }
 
 void add_bench(CLI::App& app, Action& action) {

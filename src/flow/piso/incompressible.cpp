@@ -153,12 +153,11 @@ double Incompressible::stable_dt(double courant) {
                             return by_courant * r.convection(i, j, k) + r.viscosity(i, j, k, Real(0));
                           })));
   // With eddies: beyond the explicit limit increments are smoothed, up to the convective limit.
-  const auto [both, eddy, convection] =
-      reduce_max<3>(grid_.range(), [=](int i, int j, int k, Real* rate) {
-        rate[1] = r.nut(i, j, k);
-        rate[2] = r.convection(i, j, k);
-        rate[0] = by_courant * rate[2] + r.viscosity(i, j, k, rate[1]);
-      });
+  const auto [both, eddy, convection] = reduce_max<3>(grid_.range(), [=](int i, int j, int k, Real* rate) {
+    rate[1] = r.nut(i, j, k);
+    rate[2] = r.convection(i, j, k);
+    rate[0] = by_courant * rate[2] + r.viscosity(i, j, k, rate[1]);
+  });
   explicit_dt_ = 1.0 / std::max(1e-30, double(both));
   largest_viscosity_ = setup_.viscosity + double(eddy);
   convection_ = double(convection);
@@ -212,8 +211,7 @@ BoundaryFlow Incompressible::predict(double a, double b, double time, Real dt) {
   t.dt = dt;
   t.increment_only = smoothing_;
   const BoundaryFlow through = predict_momentum(grid_, t, boundary_sums_);
-  for (int c = 0; smoothing_ && c < 3; ++c)
-    smoother_.apply(u_star_[c].view(), {t.old[c], t.a, t.u[c], t.b});
+  for (int c = 0; smoothing_ && c < 3; ++c) smoother_.apply(u_star_[c].view(), {t.old[c], t.a, t.u[c], t.b});
   return through;
 }
 

@@ -25,7 +25,8 @@ void IncrementSmoother::prepare(double nu_dt) {
     Factors& f = factors_[d];
     double above = 0.0;  // upper coefficient of the row before over its pivot
     for (std::size_t i = 0; i < op.volume.size(); ++i) {
-      const double low = nu_dt * op.coupling[i] / op.volume[i], up = nu_dt * op.coupling[i + 1] / op.volume[i];
+      const double low = nu_dt * op.coupling[i] / op.volume[i],
+                   up = nu_dt * op.coupling[i + 1] / op.volume[i];
       const double inverse = 1.0 / (1.0 + low + up + low * above);
       above = -up * inverse;
       f.inverse[i] = static_cast<Real>(inverse);
@@ -38,7 +39,8 @@ void IncrementSmoother::prepare(double nu_dt) {
 /// Along x the recurrence runs over the registers of kRealLanes rows at once, transposed there and back.
 void IncrementSmoother::smooth_x(FieldView delta, int k) const {
   const int width = (nx_ + kRealLanes - 1) / kRealLanes * kRealLanes;
-  RealLanes* column = reinterpret_cast<RealLanes*>(thread_scratch(static_cast<std::size_t>(width * kRealLanes)));
+  RealLanes* column =
+      reinterpret_cast<RealLanes*>(thread_scratch(static_cast<std::size_t>(width * kRealLanes)));
   const Factors& f = factors_[0];
   for (int j0 = 0; j0 < ny_; j0 += kRealLanes) {
     const int last = std::min(kRealLanes, ny_ - j0) - 1;
@@ -78,8 +80,9 @@ void IncrementSmoother::smooth_y(FieldView delta, int k) const {
     });
   }
   for (int j = ny_ - 2; j >= 0; --j)
-    for_each_lane(0, nx_, [above = f.above[static_cast<std::size_t>(j)], row = delta.row(j, k),
-                           after = delta.row(j + 1, k)](int i) { row[i] -= above * after[i]; });
+    for_each_lane(0, nx_,
+                  [above = f.above[static_cast<std::size_t>(j)], row = delta.row(j, k),
+                   after = delta.row(j + 1, k)](int i) { row[i] -= above * after[i]; });
 }
 
 void IncrementSmoother::smooth_z_and_add(FieldView delta, int j, const Base& base) const {
@@ -97,8 +100,9 @@ void IncrementSmoother::smooth_z_and_add(FieldView delta, int j, const Base& bas
     const Real *one = base.one.row(j, k), *two = base.two.row(j, k);
     const Real a = base.a, b = base.b, least = base.least;
     if (k > 0 && active_[2])
-      for_each_lane(0, nx_, [row, above = f.above[static_cast<std::size_t>(k - 1)],
-                             below = delta.row(j, k - 1)](int i) { below[i] -= above * row[i]; });
+      for_each_lane(0, nx_,
+                    [row, above = f.above[static_cast<std::size_t>(k - 1)],
+                     below = delta.row(j, k - 1)](int i) { below[i] -= above * row[i]; });
     for_each_lane(0, nx_, [=](int i) {
       const Real sum = row[i] + a * one[i] + b * two[i];
       row[i] = sum < least ? least : sum;  // NaN stays

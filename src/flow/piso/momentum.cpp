@@ -26,37 +26,40 @@ struct MomentumFlux {
     const Real* across_b = u[B].row(j, k);
     const Real* eddy = kTurbulent ? nut.row(j, k) : nullptr;
     Real *out_d = out[D], *out_a = out[A], *out_b = out[B];
-    for_each_lane(i0, i1, [=, this](int i) __attribute__((always_inline)) {
-      const int at[3] = {i, j, k};
-      const FaceMetrics f = face_metrics(m[D], at[D]);
-      const Real area = face_area<D>(m, i, j, k);
-      const Real v = velocity[i];
-      const auto convected = [&](const Real* p) __attribute__((always_inline)) {
-        return v * upwind_value(v, p[i - 2 * s], p[i - s], p[i], p[i + s], f);
-      };
-      const auto gradient = [&](const Real* p) __attribute__((always_inline)) { return (p[i] - p[i - s]) * f.inv_here; };
-      if constexpr (kTurbulent) {
-        const Real viscosity = nu + f.weight * eddy[i - s] + (Real(1) - f.weight) * eddy[i];
-        const auto cross = [&](std::ptrdiff_t step, Real inv_span_low, Real inv_span_high) {
-          return f.weight * derivative(normal + i - s, step, inv_span_low) +
-                 (Real(1) - f.weight) * derivative(normal + i, step, inv_span_high);
-        };
-        const Real span_a = m[A].inv_span[at[A]], span_b = m[B].inv_span[at[B]];
-        // The transposed part of the normal stress by wide differences too: it must not halve the stable
-        // step.
-        out_d[i] =
-            area * (convected(normal) - viscosity * (gradient(normal) + cross(s, m[D].inv_span[at[D] - 1],
-                                                                              m[D].inv_span[at[D]])));
-        out_a[i] =
-            area * (convected(across_a) - viscosity * (gradient(across_a) + cross(sa, span_a, span_a)));
-        out_b[i] =
-            area * (convected(across_b) - viscosity * (gradient(across_b) + cross(sb, span_b, span_b)));
-      } else {
-        out_d[i] = area * (convected(normal) - nu * gradient(normal));
-        out_a[i] = area * (convected(across_a) - nu * gradient(across_a));
-        out_b[i] = area * (convected(across_b) - nu * gradient(across_b));
-      }
-    });
+    for_each_lane(
+        i0, i1, [ =, this ](int i) __attribute__((always_inline)) {
+          const int at[3] = {i, j, k};
+          const FaceMetrics f = face_metrics(m[D], at[D]);
+          const Real area = face_area<D>(m, i, j, k);
+          const Real v = velocity[i];
+          const auto convected = [&](const Real* p) __attribute__((always_inline)) {
+            return v * upwind_value(v, p[i - 2 * s], p[i - s], p[i], p[i + s], f);
+          };
+          const auto gradient = [&](const Real* p) __attribute__((always_inline)) {
+            return (p[i] - p[i - s]) * f.inv_here;
+          };
+          if constexpr (kTurbulent) {
+            const Real viscosity = nu + f.weight * eddy[i - s] + (Real(1) - f.weight) * eddy[i];
+            const auto cross = [&](std::ptrdiff_t step, Real inv_span_low, Real inv_span_high) {
+              return f.weight * derivative(normal + i - s, step, inv_span_low) +
+                     (Real(1) - f.weight) * derivative(normal + i, step, inv_span_high);
+            };
+            const Real span_a = m[A].inv_span[at[A]], span_b = m[B].inv_span[at[B]];
+            // The transposed part of the normal stress by wide differences too: it must not halve the stable
+            // step.
+            out_d[i] =
+                area * (convected(normal) - viscosity * (gradient(normal) + cross(s, m[D].inv_span[at[D] - 1],
+                                                                                  m[D].inv_span[at[D]])));
+            out_a[i] =
+                area * (convected(across_a) - viscosity * (gradient(across_a) + cross(sa, span_a, span_a)));
+            out_b[i] =
+                area * (convected(across_b) - viscosity * (gradient(across_b) + cross(sb, span_b, span_b)));
+          } else {
+            out_d[i] = area * (convected(normal) - nu * gradient(normal));
+            out_a[i] = area * (convected(across_a) - nu * gradient(across_a));
+            out_b[i] = area * (convected(across_b) - nu * gradient(across_b));
+          }
+        });
   }
 };
 

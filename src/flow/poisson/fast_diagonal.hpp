@@ -25,7 +25,6 @@ class FastDiagonalPoisson {
   /// phi = solution of rhs; only inner cells are read and written. The two may be the same field.
   void solve(ConstFieldView rhs, FieldView phi);
 
-
  private:
   struct Axis1D {
     std::vector<double> eigenvalue;

@@ -13,7 +13,8 @@ inline void tile(int depth, const Real* a, int lda, const Real* b, int ldb, Real
   RealLanes sum[kRows][kVecs] = {};
   for (int d = 0; d < depth; ++d) {
     RealLanes row[kVecs];
-    for (int v = 0; v < kVecs; ++v) row[v] = *reinterpret_cast<const RealLanes*>(b + d * ldb + v * kRealLanes);
+    for (int v = 0; v < kVecs; ++v)
+      row[v] = *reinterpret_cast<const RealLanes*>(b + d * ldb + v * kRealLanes);
     for (int r = 0; r < kRows; ++r) {
       const Real factor = a[r * lda + d];
       for (int v = 0; v < kVecs; ++v) sum[r][v] += factor * row[v];
@@ -37,7 +38,8 @@ inline void columns(int m, int depth, const Real* a, int lda, const Real* b, int
 void small_gemm(int m, int n, int depth, const Real* a, int lda, const Real* b, int ldb, Real* c, int ldc) {
   assert(n % kRealLanes == 0);
   int col = 0;
-  for (; n - col >= 3 * kRealLanes; col += 3 * kRealLanes) columns<3>(m, depth, a, lda, b + col, ldb, c + col, ldc);
+  for (; n - col >= 3 * kRealLanes; col += 3 * kRealLanes)
+    columns<3>(m, depth, a, lda, b + col, ldb, c + col, ldc);
   if (n - col == 2 * kRealLanes) columns<2>(m, depth, a, lda, b + col, ldb, c + col, ldc);
   if (n - col == kRealLanes) columns<1>(m, depth, a, lda, b + col, ldb, c + col, ldc);
 }

@@ -38,9 +38,9 @@ GradientRow gradient_row(const Grid& grid, const std::array<ConstFieldView, 3>& 
           grid.metrics(2).inv_span[k]};
 }
 
-/// grad k . grad omega / omega along row (., j, k). omega of each direction is the mean of the neighbours that
-/// make the difference: where it jumps by orders of magnitude, at the edge of a starting jet, the quotient stays
-/// within 1/h.
+/// grad k . grad omega / omega along row (., j, k). omega of each direction is the mean of the neighbours
+/// that make the difference: where it jumps by orders of magnitude, at the edge of a starting jet, the
+/// quotient stays within 1/h.
 struct ProductRow {
   const Real *a, *b, *span_x;
   std::ptrdiff_t sy, sz;
@@ -78,35 +78,37 @@ struct ScalarFlux {
     const Real *velocity = q[D].row(j, k), *eddy = nut.row(j, k), *blend = kSst ? f1.row(j, k) : nullptr;
     const Real *one = value[0].row(j, k), *two = value[1].row(j, k);
     Real *out_one = out[0], *out_two = out[1];
-    for_each_lane(i0, i1, [=, this](int i) __attribute__((always_inline)) {
-      const int at = D == 0 ? i : D == 1 ? j : k;
-      FaceMetrics f = face_metrics(m[D], at);
-      const Real v = velocity[i], area = face_area<D>(m, i, j, k);
-      // Time-centred upwind value: half a cell less the way travelled in half a step.
-      const Real travelled = Real(0.5) * std::abs(v) * dt;
-      f.half_low = std::max(f.half_low - travelled, Real(0));
-      f.half_high = std::max(f.half_high - travelled, Real(0));
-      const Real eddy_here = f.weight * eddy[i - s] + (Real(1) - f.weight) * eddy[i];
-      Real sigma_k = Real(1) / k_epsilon::kSigmaK, sigma_2 = Real(1) / k_epsilon::kSigmaEpsilon;
-      if constexpr (kSst) {
-        const Real b = f.weight * blend[i - s] + (Real(1) - f.weight) * blend[i];
-        sigma_k = k_omega_sst::blend(b, k_omega_sst::kSigmaK1, k_omega_sst::kSigmaK2);
-        sigma_2 = k_omega_sst::blend(b, k_omega_sst::kSigmaW1, k_omega_sst::kSigmaW2);
-      }
-      const auto through = [&](const Real* p, Real sigma) {
-        return area * (v * upwind_value(v, p[i - 2 * s], p[i - s], p[i], p[i + s], f) -
-                       (nu + sigma * eddy_here) * (p[i] - p[i - s]) * f.inv_here);
-      };
-      out_one[i] = through(one, sigma_k);
-      out_two[i] = through(two, sigma_2);
-    });
+    for_each_lane(
+        i0, i1, [ =, this ](int i) __attribute__((always_inline)) {
+          const int at = D == 0 ? i : D == 1 ? j : k;
+          FaceMetrics f = face_metrics(m[D], at);
+          const Real v = velocity[i], area = face_area<D>(m, i, j, k);
+          // Time-centred upwind value: half a cell less the way travelled in half a step.
+          const Real travelled = Real(0.5) * std::abs(v) * dt;
+          f.half_low = std::max(f.half_low - travelled, Real(0));
+          f.half_high = std::max(f.half_high - travelled, Real(0));
+          const Real eddy_here = f.weight * eddy[i - s] + (Real(1) - f.weight) * eddy[i];
+          Real sigma_k = Real(1) / k_epsilon::kSigmaK, sigma_2 = Real(1) / k_epsilon::kSigmaEpsilon;
+          if constexpr (kSst) {
+            const Real b = f.weight * blend[i - s] + (Real(1) - f.weight) * blend[i];
+            sigma_k = k_omega_sst::blend(b, k_omega_sst::kSigmaK1, k_omega_sst::kSigmaK2);
+            sigma_2 = k_omega_sst::blend(b, k_omega_sst::kSigmaW1, k_omega_sst::kSigmaW2);
+          }
+          const auto through = [&](const Real* p, Real sigma) {
+            return area * (v * upwind_value(v, p[i - 2 * s], p[i - s], p[i], p[i + s], f) -
+                           (nu + sigma * eddy_here) * (p[i] - p[i - s]) * f.inv_here);
+          };
+          out_one[i] = through(one, sigma_k);
+          out_two[i] = through(two, sigma_2);
+        });
   }
 };
 
 /// Where a transport step writes.
 struct ScalarOut {
   FieldView k, second, nut, f1;
-  bool unfinished;  ///< k and second are increments still to be smoothed: nu_t is taken from what they are now
+  bool
+      unfinished;  ///< k and second are increments still to be smoothed: nu_t is taken from what they are now
 };
 
 template <bool kSst, bool kRound>
@@ -130,50 +132,53 @@ void transport(const Grid& grid, const ScalarFlux<kSst>& face, const std::array<
     const auto update = [=](auto axisymmetric, auto unfinished) {
       GradientRow row = gradient;
       if constexpr (!axisymmetric) row.radius = nullptr;
-      for_each_lane(0, nx, [=](int i) __attribute__((always_inline)) {
-        const Real k0 = old_k[i], s0 = old_second[i], nut = eddy[i];
-        const VelocityGradient v = row(i);
-        const Real strain2 = strain_squared(v);
-        const Real by_volume = dt * inv_volume[i] * inv_jk;
-        const Real k_carried = k0 - by_volume * b0[i], s_carried = s0 - by_volume * b1[i];
-        Real k1, s1;
-        if constexpr (kSst) {
-          using namespace k_omega_sst;
-          const Real f1 = blending[i], beta = blend(f1, kBeta1, kBeta2),
-                     most = Real(20) * kBetaStar * k0 * s0;
-          const Real cross = (Real(1) - f1) * Real(2) * kSigmaW2 * product(i);
-          const Real gain =
-              gamma(f1) * std::min(strain2, most / std::max(nut, Real(1e-12))) + std::max(cross, Real(0));
-          k1 = (k_carried + dt * std::min(nut * strain2, most)) / (Real(1) + dt * kBetaStar * s0);
-          s1 = (s_carried + dt * gain) / (Real(1) + dt * (beta * s0 + std::max(-cross, Real(0)) / s0));
-        } else {
-          using namespace k_epsilon;
-          const Real longest = longest_time(std::sqrt(strain2));
-          const Real rate = s0 / k0, own_rate = std::max(rate, Real(1) / longest), produced = nut * strain2;
-          Real gain = kC1 * produced, loss = kC2;
-          if constexpr (kRound) {
-            const Real pope = kC3 * pope_chi(k0, s0, vortex_stretching(v), longest);
-            gain += std::max(pope, Real(0)) * s0;
-            loss += std::max(-pope, Real(0));
-          }
-          k1 = (k_carried + dt * produced) / (Real(1) + dt * rate);
-          s1 = (s_carried + dt * own_rate * gain) / (Real(1) + dt * loss * own_rate);
-        }
-        k1 = std::max(k1, kMinimalK);
-        s1 = std::max(s1, kMinimalSecond);
-        out_k[i] = unfinished ? k1 - k0 : k1;
-        out_second[i] = unfinished ? s1 - s0 : s1;
-        const Real rate_of_strain = std::sqrt(strain2), kn = unfinished ? k0 : k1, sn = unfinished ? s0 : s1;
-        if constexpr (kSst) {
-          using namespace k_omega_sst;
-          const Real d = std::min(distance_x[i], distance_jk);
-          out_f1[i] = k_omega_sst::f1(kn, sn, nu, d, Real(2) * kSigmaW2 * product(i));
-          out_nut[i] = std::min(eddy_viscosity(kn, sn, rate_of_strain, f2(kn, sn, nu, d)), most);
-        } else {
-          out_nut[i] =
-              std::min(k_epsilon::eddy_viscosity(kn, sn, k_epsilon::longest_time(rate_of_strain)), most);
-        }
-      });
+      for_each_lane(
+          0, nx, [=](int i) __attribute__((always_inline)) {
+            const Real k0 = old_k[i], s0 = old_second[i], nut = eddy[i];
+            const VelocityGradient v = row(i);
+            const Real strain2 = strain_squared(v);
+            const Real by_volume = dt * inv_volume[i] * inv_jk;
+            const Real k_carried = k0 - by_volume * b0[i], s_carried = s0 - by_volume * b1[i];
+            Real k1, s1;
+            if constexpr (kSst) {
+              using namespace k_omega_sst;
+              const Real f1 = blending[i], beta = blend(f1, kBeta1, kBeta2),
+                         most = Real(20) * kBetaStar * k0 * s0;
+              const Real cross = (Real(1) - f1) * Real(2) * kSigmaW2 * product(i);
+              const Real gain =
+                  gamma(f1) * std::min(strain2, most / std::max(nut, Real(1e-12))) + std::max(cross, Real(0));
+              k1 = (k_carried + dt * std::min(nut * strain2, most)) / (Real(1) + dt * kBetaStar * s0);
+              s1 = (s_carried + dt * gain) / (Real(1) + dt * (beta * s0 + std::max(-cross, Real(0)) / s0));
+            } else {
+              using namespace k_epsilon;
+              const Real longest = longest_time(std::sqrt(strain2));
+              const Real rate = s0 / k0, own_rate = std::max(rate, Real(1) / longest),
+                         produced = nut * strain2;
+              Real gain = kC1 * produced, loss = kC2;
+              if constexpr (kRound) {
+                const Real pope = kC3 * pope_chi(k0, s0, vortex_stretching(v), longest);
+                gain += std::max(pope, Real(0)) * s0;
+                loss += std::max(-pope, Real(0));
+              }
+              k1 = (k_carried + dt * produced) / (Real(1) + dt * rate);
+              s1 = (s_carried + dt * own_rate * gain) / (Real(1) + dt * loss * own_rate);
+            }
+            k1 = std::max(k1, kMinimalK);
+            s1 = std::max(s1, kMinimalSecond);
+            out_k[i] = unfinished ? k1 - k0 : k1;
+            out_second[i] = unfinished ? s1 - s0 : s1;
+            const Real rate_of_strain = std::sqrt(strain2), kn = unfinished ? k0 : k1,
+                       sn = unfinished ? s0 : s1;
+            if constexpr (kSst) {
+              using namespace k_omega_sst;
+              const Real d = std::min(distance_x[i], distance_jk);
+              out_f1[i] = k_omega_sst::f1(kn, sn, nu, d, Real(2) * kSigmaW2 * product(i));
+              out_nut[i] = std::min(eddy_viscosity(kn, sn, rate_of_strain, f2(kn, sn, nu, d)), most);
+            } else {
+              out_nut[i] =
+                  std::min(k_epsilon::eddy_viscosity(kn, sn, k_epsilon::longest_time(rate_of_strain)), most);
+            }
+          });
     };
     using Yes = std::true_type;  // decided outside the loop: it would not vectorise
     using No = std::false_type;
