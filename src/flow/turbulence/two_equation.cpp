@@ -220,7 +220,7 @@ void TwoEquation::measure_walls(const Boundaries& b) {
   for (int d = 0; d < 3; ++d) {
     const Metrics m = grid_.metrics(d);
     std::vector<Real>& distance = wall_distance_[static_cast<std::size_t>(d)];
-    distance.assign(static_cast<std::size_t>(grid_.n(d)), Real(1e3));
+    distance.assign(static_cast<std::size_t>(grid_.n(d) + kRealLanes), Real(1e3));  // whole registers
     for (int side = 0; side < 2; ++side) {
       const bool wall = grid_.active(d) && b.kind(2 * d + side) == BoundaryKind::wall;
       is_wall_[static_cast<std::size_t>(2 * d + side)] = wall;
