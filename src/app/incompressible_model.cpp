@@ -145,7 +145,7 @@ class IncompressibleModel : public FlowModel {
     ledger["impulse_on_solids_N_s"] = {l.impulse_on_solids.x(), l.impulse_on_solids.y(),
                                        l.impulse_on_solids.z()};
     ledger["largest_divergence"] = flow_->largest_divergence();
-    ledger["leak_m_s"] = flow_->leak();
+    ledger["leak_m_s"] = l.leak;
     if (jet_ && grid_.axisymmetric()) {
       const double d = case_.valve.orifice_diameter, z0 = case_.jet.nozzle.z();
       const double exit = jet_->fastest(last_time_, grid_.axis(2).face.front());
@@ -181,7 +181,7 @@ class IncompressibleModel : public FlowModel {
     std::vector<double> n;
     for (const Vec3& v : {l.momentum_through_boundaries, l.impulse_on_solids, momentum_at_start_})
       n.insert(n.end(), {v.x(), v.y(), v.z()});
-    n.insert(n.end(), {l.mass_through_boundaries, l.mass_in});
+    n.insert(n.end(), {l.mass_through_boundaries, l.mass_in, l.leak});
     return n;
   }
   void restore_numbers(std::span<const double> n, double time) override {
@@ -190,6 +190,7 @@ class IncompressibleModel : public FlowModel {
     for (std::size_t v = 0; v < 3; ++v) *vectors[v] = Vec3(n[3 * v], n[3 * v + 1], n[3 * v + 2]);
     l.mass_through_boundaries = n[9];
     l.mass_in = n[10];
+    l.leak = n[11];
     flow_->resume(time);
   }
 

@@ -67,7 +67,7 @@ std::string Progress::status(const ProgressState& s) const {
   return fmt::format("{:3.0f} %  t {:.3f}/{:.3f} ms  step {}  Co {:.2f}  {:.1f} Mcell/s  {}",
                      100.0 * fraction(s), 1e3 * s.time, 1e3 * s.end_time, s.step, s.courant,
                      1e-6 * steps_per_wall_ * static_cast<double>(s.cells),
-                     std::isfinite(left) ? duration_text(left) + " left" : "");
+                     std::isfinite(left) && left > 0.0 ? duration_text(left) + " left" : "");
 }
 
 void Progress::draw_bar(const ProgressState& s) {

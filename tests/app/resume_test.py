@@ -13,8 +13,9 @@ from pathlib import Path
 TIMES = {"wall_time_s", "cell_steps_per_s", "operators"}  # what may differ
 
 
-def start(ejecta, case, out, resume):
-    return subprocess.Popen([ejecta, "run", case, "--quiet", "--threads", "1", "--out", out, "--resume" if resume else "--force"])
+def start(ejecta, case, out, resume, *more):
+    how = "--resume" if resume else "--force"
+    return subprocess.Popen([ejecta, "run", case, "--quiet", "--threads", "1", "--out", out, how, *more])
 
 
 def result(out):
@@ -31,6 +32,17 @@ def compare(whole, disturbed):
                 raise SystemExit(f"failed: {file.name} differs")
 
 
+def resume_at_the_end(ejecta, case, scratch, whole):
+    """A run killed between its last step and its result: resuming takes no step and says the same."""
+    finished = f"{scratch}/finished.run"
+    at_the_end = ("--set", f"checkpoint.every_time={result(whole)['simulated_time_s']!r} s")
+    for resume in (False, True):
+        if start(ejecta, case, finished, resume, *at_the_end).wait() != 0:
+            raise SystemExit("failed: the run with a checkpoint at its end")
+        if result(whole) != result(finished):
+            raise SystemExit("failed: result.json differs after resuming at the end")
+
+
 def main(ejecta, case, scratch, kills=4):
     shutil.rmtree(scratch, ignore_errors=True)
     Path(scratch).mkdir(parents=True)
@@ -39,6 +51,7 @@ def main(ejecta, case, scratch, kills=4):
     if start(ejecta, case, whole, False).wait() != 0:
         raise SystemExit("failed: the undisturbed run")
     duration = time.time() - began
+    resume_at_the_end(ejecta, case, scratch, whole)
     draw = random.Random(7)
     done = 0
     while done < kills:

@@ -313,11 +313,11 @@ void Incompressible::advance(double time, double dt, SolidMask& solids) {
     }
   }
 
-  leak_ = 0;
+  ledger_.leak = 0;
   for (const SolidCell& c : solids.cells)
     if (c.weight == Real(1) && c.ratio == Real(0))
       for (int d = 0; d < 3; ++d)
-        leak_ = std::max(leak_, std::abs(double(u_[d](c.i, c.j, c.k) - c.solid[d])));
+        ledger_.leak = std::max(ledger_.leak, std::abs(double(u_[d](c.i, c.j, c.k) - c.solid[d])));
   for (const SolidCell& c : solids.cells) solid_(c.i, c.j, c.k) = 0;
   Vec3 impulse{0, 0, 0};
   for (const auto& i : solids.impulse) impulse += Vec3(i[0], i[1], i[2]);

@@ -37,6 +37,7 @@ struct FlowLedger {
   double mass_through_boundaries = 0;         ///< kg since construction, net, positive into the box
   double mass_in = 0;                         ///< kg since construction, what came in
   Vec3 impulse_on_solids{0, 0, 0};            ///< N s
+  double leak = 0;  ///< largest |u - solid| in a fully forced cell after the last step, m/s
 };
 
 /// Incompressible flow by PISO (Issa 1986) on a collocated graded grid. One step:
@@ -75,9 +76,6 @@ class Incompressible {
   double largest_divergence() const;
   Vec3 momentum() const;  ///< kg m/s in the box (axisymmetric: per radian)
   double kinetic_energy() const;
-  double leak() const {
-    return leak_;
-  }  ///< largest |u - solid| in a fully forced cell after the last step, m/s
   const FlowTimes& times() const { return times_; }
   const FlowLedger& ledger() const { return ledger_; }
   FlowLedger& ledger() { return ledger_; }
@@ -111,7 +109,7 @@ class Incompressible {
   double explicit_dt_ = 1e300, largest_viscosity_ = 0;  // of the last stable_dt()
   double convection_ = -1;                              // largest sum |u| / h, 1/s; negative: not known
   std::vector<BoundaryFlow> boundary_sums_;             // scratch
-  double box_volume_ = 0, leak_ = 0;
+  double box_volume_ = 0;
   FlowTimes times_;
   FlowLedger ledger_;
 };
