@@ -151,8 +151,11 @@ nlohmann::ordered_json MomentumRecord::summary() const {
   if (time_ <= 0.0) return r;
   const std::vector<double> momentum = mean();
   const auto [low, high] = std::minmax_element(momentum.begin(), momentum.end());
-  r["least_over_thrust"] = *low / thrust();
-  r["most_over_thrust"] = *high / thrust();
+  // The air drawn along the wall around the orifice sucks at it: what the jet carries is the thrust less
+  // this.
+  r["suction_on_wall_N"] = thrust() - momentum.front();
+  r["least_over_first"] = *low / momentum.front();
+  r["most_over_first"] = *high / momentum.front();
   r["heights"] = nlohmann::ordered_json::array();
   for (int n = 0; n <= kHeights; ++n) {
     const double at = height_.back() * n / kHeights * (1.0 - 1e-9);

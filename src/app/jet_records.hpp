@@ -64,7 +64,7 @@ class MomentumRecord {
   std::vector<double> mean() const;
   double thrust() const { return time_ > 0.0 ? thrust_ / time_ : 0.0; }  ///< N, of the orifice
   const std::vector<double>& heights() const { return height_; }         ///< m above the orifice
-  /// Smallest and largest over the thrust, and a dozen heights in between.
+  /// Smallest and largest over that of the orifice's plane, and a dozen heights over the thrust.
   nlohmann::ordered_json summary() const;
 
  private:

@@ -143,7 +143,7 @@ TEST(JetModel, CompressibleAndIncompressibleLeaveWithTheSameMomentum) {
   for (const Case& each : {c, incompressible_jet(c)}) {
     JetModel jet(each);
     while (jet.time() < 0.09e-3) jet.step();
-    EXPECT_NEAR(jet.orifice_flow().momentum / exact, 1.0, 0.03) << word(each.flow.solver);
+    EXPECT_NEAR(jet.orifice_flow().momentum / exact, 1.0, 0.03);
   }
 }
 
@@ -163,8 +163,8 @@ TEST_F(Measured, IsReadInItsUnitsAndCompared) {
   const std::vector<double> x{0.0, 0.01, 0.05}, y{0.0, 2100.0, 6100.0};
   const MeasuredError e = compare_measured(m, x, y);
   EXPECT_EQ(e.points, 2);  // the third lies beyond the computed stretch
-  EXPECT_NEAR(e.mean, -350.0, 1e-9);
-  EXPECT_NEAR(e.largest, 800.0, 1e-9);
+  EXPECT_NEAR(e.mean, -400.0, 1e-9);  // 100 and -900
+  EXPECT_NEAR(e.largest, 900.0, 1e-9);
   EXPECT_DOUBLE_EQ(e.scale, 4000.0);
 }
 

@@ -50,6 +50,24 @@ TEST(GodunovBoundary, AWallReturnsAllAndAFixedPressureToo) {
   EXPECT_GT(reflection(BoundaryType::free_stream, 200), 0.9);
 }
 
+// Air drawn in through the rim of a cylinder towards a sink: u r is even, and the pressure at the rim is the
+// one kept outside. An even velocity across the rim would ask for rho c u h/(2 R) = 9 Pa here.
+TEST(GodunovBoundary, AFreeStreamLetsAirConvergeThroughARim) {
+  const double rho = gas_density(kAir, kAmbient, kTemperature), inner = 0.01, outer = 0.07;
+  const GasState still{rho, {0, 0, 0}, kAmbient};
+  const auto drawn = [&](double r) {
+    const double u = outer / r;  // 1 m/s at the rim
+    return GasState{rho, {-u, 0, 0}, kAmbient - 0.5 * rho * u * u};
+  };
+  test::Tube t(even_axis(inner, outer, 20), even_axis(0, 1, 1), even_axis(0, 0.01, 1), true, air());
+  for (int f = 0; f < 6; ++f) t.boundary(f, BoundaryType::symmetry, still);
+  t.boundary(0, BoundaryType::velocity, drawn(inner));
+  t.boundary(1, BoundaryType::free_stream, still);
+  t.fill([&](const Vec3& x) { return drawn(x.x()); });
+  t.run(5e-3, 0.8);
+  EXPECT_NEAR(t.solver.at(19, 0, 0).pressure, kAmbient, 1.5);
+}
+
 godunov::GasConstants constants() { return {1.4, 287.05, kAmbient}; }
 
 Primitive at_rest(double pressure) {

@@ -2,13 +2,16 @@
 
 #include <cmath>
 
+#include "base/simd.hpp"
+
 namespace ejecta::godunov {
 
 Geometry::Geometry(const Grid& grid) {
   for (int d = 0; d < 3; ++d) {
     const Metrics m = grid.metrics(d);
     const bool radial = grid.axisymmetric() && d == 0;
-    const auto total = static_cast<std::size_t>(grid.n(d) + 2 * kGhosts + 1);
+    // Kernels run over whole registers (for_each_lane)
+    const auto total = static_cast<std::size_t>(grid.n(d) + 2 * kGhosts + 1 + kRealLanes);
     std::array<std::vector<Real>*, 5> line{};
     for (std::size_t q = 0; q < 5; ++q) {
       line[q] = &storage_[5 * static_cast<std::size_t>(d) + q];

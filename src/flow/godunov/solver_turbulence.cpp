@@ -25,11 +25,11 @@ void Solver::measure_walls() {
   for (int d = 0; d < 3; ++d) {
     const Axis& axis = grid_.axis(d);
     std::vector<Real>& distance = wall_distance_[static_cast<std::size_t>(d)];
-    distance.assign(static_cast<std::size_t>(axis.n), kNone);
+    distance.assign(static_cast<std::size_t>(axis.n + kRealLanes), kNone);  // whole registers
     for (int side = 0; side < 2; ++side) {
       if (!grid_.active(d) || !boundaries_.is_wall(2 * d + side)) continue;
       const double wall = side ? axis.face.back() : axis.face.front();
-      for (std::size_t i = 0; i < distance.size(); ++i)
+      for (std::size_t i = 0; i < axis.centre.size(); ++i)
         distance[i] = std::min(distance[i], Real(std::abs(axis.centre[i] - wall)));
     }
   }
