@@ -162,7 +162,7 @@ TEST_F(Measured, IsReadInItsUnitsAndCompared) {
   EXPECT_DOUBLE_EQ(m.y[1], 4000.0);
   const std::vector<double> x{0.0, 0.01, 0.05}, y{0.0, 2100.0, 6100.0};
   const MeasuredError e = compare_measured(m, x, y);
-  EXPECT_EQ(e.points, 2);  // the third lies beyond the computed stretch
+  EXPECT_EQ(e.points, 2);             // the third lies beyond the computed stretch
   EXPECT_NEAR(e.mean, -400.0, 1e-9);  // 100 and -900
   EXPECT_NEAR(e.largest, 900.0, 1e-9);
   EXPECT_DOUBLE_EQ(e.scale, 4000.0);
