@@ -204,7 +204,8 @@ class IncompressibleModel : public FlowModel {
       s.second = static_cast<Real>(second);
       return s;
     };
-    switch (spec.type) {
+    const bool axis = grid_.axisymmetric() && face == 0 && grid_.lower().x() == 0.0;
+    switch (axis ? BoundaryType::symmetry : spec.type) {
       case BoundaryType::slip:
       case BoundaryType::symmetry:
         b.kind = BoundaryKind::mirror;

@@ -18,7 +18,7 @@ double percent(double value, double reference) { return 100.0 * (value / referen
 JetProbe::JetProbe(const ProbeSpec& spec, const output::RunDirectory& directory,
                    std::span<const std::string> provenance)
     : spec_(spec),
-      history_(directory.history(spec.name), provenance,
+      history_(directory.history("probe-" + spec.name), provenance,
                {{"total_gauge", "Pa"},
                 {"transducer", "Pa"},
                 {"velocity_z", "m/s"},

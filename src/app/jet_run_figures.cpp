@@ -39,8 +39,8 @@ void JetRun::add_centreline_figures() {
         centreline_series(fmt::format("incompressible, {:.0f} m/s", incompressible_->equivalent_velocity),
                           incompressible_->line));
   compare("centreline", line_.z, total, f);
+  figures_.add(f);
   figures_.add(beyond(f, 1e3 * kFarView, "Total pressure on the axis, where the box begins and beyond"));
-  figures_.add(std::move(f));
   figures_.add({"Mach number on the axis", "z [mm]", "Mach number", {{"computed", z, mach}}});
   output::Figure flux{"Momentum through planes across the jet", "z [mm]", "momentum flux [N]"};
   const auto add = [&](const char* label, std::vector<double> heights, const std::vector<double>& momentum) {

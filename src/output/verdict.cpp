@@ -54,6 +54,13 @@ std::string verdict_sentence(const ordered_json& result) {
     for (const ordered_json& e : all) passed += e.value("pass", false);
     return fmt::format("{} of {} expected values met.", passed, all.size());
   }
+  if (result.contains("at_stand_off") && has_number(result["at_stand_off"], "mach")) {
+    const ordered_json& at = result["at_stand_off"];
+    return fmt::format(
+        "The jet reaches Mach {:.2f} and {:.1f} kPa of total gauge pressure {:.0f} mm from its orifice.",
+        at["mach"].get<double>(), 1e-3 * at["total_gauge_Pa"].get<double>(),
+        1e3 * at["height_m"].get<double>());
+  }
   if (has_number(result, "simulated_time_s"))
     return fmt::format("Computed {:.4g} ms.", 1e3 * result["simulated_time_s"].get<double>());
   return "Computed.";
