@@ -15,10 +15,24 @@ constexpr double kArrivals = 4.0;
 constexpr double kOpening = 0.2e-3;  ///< s, within which the valve opens: sooner, and the box rings
 constexpr double kLook = 5e-6;       ///< s, between two looks at the momentum
 
-/// Time the head of the jet needs to `height`, s.
-double arrival(const Case& c, const NozzleExit& exit, double height) {
-  const double momentum = nozzle_thrust(exit, c.valve.discharge_coefficient, c.valve.orifice_diameter);
-  return std::pow(height / kPenetration, 2) / std::sqrt(momentum / c.fluid.density);
+/// Time the head of a jet of `momentum` (N) needs to `height`, s.
+double arrival(double momentum, double density, double height) {
+  return std::pow(height / kPenetration, 2) / std::sqrt(momentum / density);
+}
+
+/// Of the air that blows forward through a plane, N.
+double jet_momentum(const JetModel& jet, double height) {
+  const Metrics x = jet.grid().metrics(0), y = jet.grid().metrics(1);
+  double sum = 0.0;
+  for (int j = 0; j < jet.grid().ny(); ++j)
+    for (int i = 0; i < jet.grid().nx(); ++i) {
+      Vec3 at = jet.grid().centre(i, j, 0);
+      at.z() = jet.grid().lower().z() + height;
+      const JetSample s = jet.sample(at);
+      const double w = std::max(0.0, s.velocity.z());
+      sum += double(x.volume[i]) * double(y.volume[j]) * s.density * w * w;
+    }
+  return jet.around() * sum;
 }
 
 Case blown(Case c, double time) {
@@ -33,11 +47,6 @@ Case blown(Case c, double time) {
 
 }  // namespace
 
-double SettledJet::momentum_at(double height) const {
-  const auto above = std::lower_bound(heights.begin(), heights.end(), height);
-  return momentum[std::min(static_cast<std::size_t>(above - heights.begin()), momentum.size() - 1)];
-}
-
 Case incompressible_jet(Case c, double velocity) {
   c.flow.solver = FlowSolver::incompressible;
   c.jet.kind = JetKind::velocity_inlet;
@@ -50,7 +59,11 @@ SettledJet settled_jet(const Case& c, double height, const std::function<void(co
   const double warm =
       c.valve.supply_temperature > 0.0 ? c.valve.supply_temperature : c.environment.temperature;
   const NozzleExit exit = nozzle_exit(gas, c.valve.supply_pressure, warm, c.environment.pressure);
-  const double head = arrival(c, exit, height);
+  const double blown_at = c.flow.solver == FlowSolver::incompressible ? c.jet.inlet_velocity : 0.0;
+  const double head =
+      arrival(blown_at > 0.0 ? c.fluid.density * nozzle_area(c.valve.orifice_diameter) * blown_at * blown_at
+                             : nozzle_thrust(exit, c.valve.discharge_coefficient, c.valve.orifice_diameter),
+              c.fluid.density, height);
   SettledJet s{.scenario = blown(c, kArrivals * head)};
   s.equivalent_velocity = nozzle_equivalent_velocity(exit, c.valve.discharge_coefficient, c.fluid.density);
   JetModel jet(s.scenario);
@@ -72,6 +85,7 @@ SettledJet settled_jet(const Case& c, double height, const std::function<void(co
   s.thrust = momentum.thrust();
   s.momentum_summary = momentum.summary();
   s.at_stand_off = jet.sample(jet.grid().lower() + Vec3(0, 0, c.launch.stand_off));
+  s.momentum_at_stand_off = jet_momentum(jet, c.launch.stand_off);
   note(fmt::format(
       "{}: {:.3f} ms, {} steps, {:.0f} m/s and {:.2f} kPa on the axis at {:.0f} mm",
       c.flow.solver == FlowSolver::compressible

@@ -15,10 +15,11 @@ struct SettledJet {
   std::int64_t steps = 0;
   double equivalent_velocity = 0.0;  ///< m/s, by the momentum formula
   Centreline line;
-  JetSample at_stand_off;                   ///< on the axis
-  std::vector<double> heights, momentum;    ///< m and N, of planes across the jet
-  double thrust = 0.0;                      ///< N, through the orifice
-  double momentum_at(double height) const;  ///< N
+  /// N, of the air that blows forward: settles with the jet, long before the air drawn in around it does
+  double momentum_at_stand_off = 0.0;
+  JetSample at_stand_off;                 ///< on the axis
+  std::vector<double> heights, momentum;  ///< m and N, of planes across the jet
+  double thrust = 0.0;                    ///< N, through the orifice
   nlohmann::ordered_json momentum_summary;
 };
 

@@ -23,7 +23,7 @@ using nlohmann::ordered_json;
 
 ordered_json entry(const SettledJet& jet) {
   return {{"thrust_N", jet.thrust},
-          {"momentum_N", jet.momentum_at(jet.scenario.launch.stand_off)},
+          {"momentum_N", jet.momentum_at_stand_off},
           {"velocity_m_s", jet.at_stand_off.velocity.z()},
           {"mach", jet.at_stand_off.mach},
           {"total_gauge_Pa", jet.at_stand_off.total_gauge},
@@ -85,7 +85,7 @@ int sweep_jet(const Case& original, const RunOptions& options) {
   std::vector<double> momenta, totals, gauges;
   for (const double velocity : c.jet.sweep_velocities) {
     const SettledJet jet = settled_jet(incompressible_jet(c, velocity), height, note);
-    momenta.push_back(jet.momentum_at(height));
+    momenta.push_back(jet.momentum_at_stand_off);
     totals.push_back(jet.at_stand_off.total_gauge);
     slow.push_back(entry(jet));
     slow.back()["inlet_velocity_m_s"] = velocity;
@@ -103,7 +103,7 @@ int sweep_jet(const Case& original, const RunOptions& options) {
     e["equivalent_velocity_formula_m_s"] = jet.equivalent_velocity;
     if (!slow.empty()) {
       e["equivalent_velocity_momentum_m_s"] =
-          where_square_reaches(c.jet.sweep_velocities, momenta, jet.momentum_at(height));
+          where_square_reaches(c.jet.sweep_velocities, momenta, jet.momentum_at_stand_off);
       e["equivalent_velocity_total_pressure_m_s"] =
           where_square_reaches(c.jet.sweep_velocities, totals, jet.at_stand_off.total_gauge);
     }
