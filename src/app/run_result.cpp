@@ -65,7 +65,7 @@ Json body_json(const CoupledModel& m, std::size_t b) {
 /// Volume-weighted L2 and largest errors against [exact].
 void add_errors(const CoupledModel& m, double time, Json& result) {
   const ExactSpec& exact = m.config().exact;
-  if (!exact.velocity && !exact.pressure) return;
+  if (!exact.velocity && !exact.pressure && !exact.k) return;
   const Grid& g = m.grid();
   const auto norms = [&](const std::string& name, const auto& difference) {
     double sum = 0.0, volume = 0.0, largest = 0.0;
@@ -88,6 +88,14 @@ void add_errors(const CoupledModel& m, double time, Json& result) {
       norms(std::string("velocity_") + "xyz"[d], [&](int i, int j, int k) {
         const Vec3 x = g.centre(i, j, k);
         return double(u[static_cast<std::size_t>(d)](i, j, k)) - f(x.x(), x.y(), x.z(), time);
+      });
+    }
+  for (const output::CellField& field : exact.k ? m.flow()->fields() : std::vector<output::CellField>{})
+    if (field.name == "k") {
+      const Expression f(*exact.k);
+      norms("k", [&, k_field = field.component[0]](int i, int j, int k) {
+        const Vec3 x = g.centre(i, j, k);
+        return double(k_field(i, j, k)) - f(x.x(), x.y(), x.z(), time);
       });
     }
   if (!exact.pressure || m.config().flow.solver != FlowSolver::incompressible) return;

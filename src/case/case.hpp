@@ -287,7 +287,7 @@ struct CheckpointSpec {
 /// [exact]: expressions in x, y, z, t; result.json then holds error norms
 struct ExactSpec {
   std::optional<std::array<std::string, 3>> velocity;
-  std::optional<std::string> pressure, density;
+  std::optional<std::string> pressure, density, k;
   std::array<std::string, 3> source{"0", "0", "0"};  ///< manufactured momentum source, m/s2
 };
 
