@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "app/bench_dem.hpp"
 #include "app/bench_jet.hpp"
 #include "app/coupled_model.hpp"
 #include "app/exit_code.hpp"
@@ -95,6 +96,10 @@ double least_traffic(const std::string& name) {
 
 int bench(const BenchOptions& options) {
   if (options.threads > 0) set_thread_count(options.threads);
+  if (!options.only.empty()) {
+    bench_dem(options.only == "settled");
+    return exit_done;
+  }
   const Case c = parse_case(kStandardCase, "the standard case");
   CoupledModel model(c);
   double time = 0.0;
@@ -132,6 +137,7 @@ int bench(const BenchOptions& options) {
       "\nThe limit is the time memory needs to deliver every field of a pass once; above 100 % fields stayed "
       "in cache.\n");
   bench_jet(options.steps);
+  bench_dem(false);
   return exit_done;
 }
 

@@ -8,6 +8,7 @@
 #include "app/jet_source.hpp"
 #include "base/error.hpp"
 #include "base/stopwatch.hpp"
+#include "case/copies.hpp"
 #include "dem/walls.hpp"
 #include "sorter/launch.hpp"
 
@@ -31,7 +32,10 @@ constexpr double kDeadAir = 1e-3;
 }  // namespace
 
 CoupledModel::CoupledModel(const Case& c)
-    : case_(c), grid_(grid_of(c)), flow_(make_flow_model(c, grid_)), particles_(make_particles(c)) {
+    : case_(with_copies(c)),
+      grid_(grid_of(c)),
+      flow_(make_flow_model(case_, grid_)),
+      particles_(make_particles(case_)) {
   air_ = flow_ != nullptr;
   place_bodies();
   const std::size_t n = particles_.bodies().size();
@@ -201,8 +205,11 @@ bool CoupledModel::finished() const {
   if (case_.run.until == RunUntil::verdict) return splitter_ && splitter_->all_passed();
   if (case_.run.until != RunUntil::rest) return false;
   const auto bodies = particles_.bodies();
-  return std::all_of(bodies.begin(), bodies.end(), [](const Body& b) {
-    return b.velocity.norm() + b.angular_velocity.norm() * b.shape.bounding_radius() < 1e-4;
+  for (std::size_t n = 0; n < bodies.size(); ++n)
+    if (particles_.presence(static_cast<int>(n)) == Presence::waiting) return false;
+  return std::all_of(bodies.begin(), bodies.end(), [&](const Body& b) {
+    return particles_.presence(static_cast<int>(&b - bodies.data())) == Presence::gone ||
+           b.velocity.norm() + b.angular_velocity.norm() * b.shape.bounding_radius() < 1e-4;
   });
 }
 

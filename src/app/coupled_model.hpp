@@ -65,7 +65,7 @@ class CoupledModel {
   void build_step();
   void watch_air(double time);
 
-  const Case& case_;
+  const Case case_;  // copies of bodies written out
   Grid grid_;
   std::unique_ptr<FlowModel> flow_;
   Particles particles_;

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "app/replay_header.hpp"
+#include "app/spacing.hpp"
 #include "base/clock.hpp"
 
 namespace ejecta {
@@ -60,13 +61,17 @@ output::PvdSeries open_series(const output::RunDirectory& directory, const std::
                 : output::PvdSeries(directory.fields(), name);
 }
 
+/// More bodies have no history each: a process may not hold so many files open.
+constexpr std::size_t kHistories = 200;
+
 }  // namespace
 
 RunOutputs::RunOutputs(const Case& c, const CoupledModel& model, const output::RunDirectory& directory,
                        const std::vector<std::string>& provenance, std::optional<double> resume)
-    : case_(c), model_(model), directory_(directory) {
-  for (const Body& b : model.particles().bodies())
-    bodies_.push_back(open_history(directory, "body-" + b.name, provenance, body_columns(), resume));
+    : case_(c), model_(model), directory_(directory), provenance_(provenance) {
+  if (model.particles().bodies().size() <= kHistories)
+    for (const Body& b : model.particles().bodies())
+      bodies_.push_back(open_history(directory, "body-" + b.name, provenance, body_columns(), resume));
   if (model.flow()) {
     std::vector<Column> columns;
     for (const auto& [name, unit] : model.flow()->quantities()) columns.push_back({name, unit});
@@ -98,7 +103,7 @@ RunOutputs::RunOutputs(const Case& c, const CoupledModel& model, const output::R
       air_ = open_series(directory, "air", resume);
       writer_.emplace(model.grid());
     }
-    if (!bodies_.empty()) bodies_series_ = open_series(directory, "bodies", resume);
+    if (!model.particles().bodies().empty()) bodies_series_ = open_series(directory, "bodies", resume);
   }
   if (model.flow() && c.output.slices_interval > 0.0)
     for (const SliceSpec& s : c.slices) {
@@ -165,7 +170,7 @@ void RunOutputs::update_probes(double time) {
 
 void RunOutputs::write_histories(double time) {
   const auto bodies = model_.particles().bodies();
-  for (std::size_t b = 0; b < bodies.size(); ++b) {
+  for (std::size_t b = 0; b < bodies_.size(); ++b) {
     std::array<double, 18> row;
     const Vec3 columns[] = {bodies[b].position,         bodies[b].velocity,
                             bodies[b].angular_velocity, model_.loads()[b].force,
@@ -206,7 +211,8 @@ void RunOutputs::write_fields(double time) {
         contact{"contact_force", 3, {}};
     const auto bodies = model_.particles().bodies();
     for (std::size_t b = 0; b < bodies.size(); ++b) {
-      poses.push_back({bodies[b].position, bodies[b].orientation});
+      poses.push_back(
+          {bodies[b].position, bodies[b].orientation, model_.particles().presence(int(b)) == Presence::here});
       speed.values.push_back(bodies[b].velocity.norm());
       for (int d = 0; d < 3; ++d) {
         velocity.values.push_back(bodies[b].velocity[d]);
@@ -258,6 +264,20 @@ void RunOutputs::write_lines(double time) {
 
 void RunOutputs::finish(double time) {
   if (time > last_history_) write_histories(time);
+  const Particles& particles = model_.particles();
+  if (!belt_runs(particles)) return;
+  output::HistoryFile file(directory_.history("spacing"), provenance_,
+                           {{"body", "1"},
+                            {"neighbour", "1"},
+                            {"x", "m"},
+                            {"y", "m"},
+                            {"z", "m"},
+                            {"gap", "m"},
+                            {"centre_distance", "m"}});
+  for (const Spacing& s : spacings(particles)) {
+    const Vec3& x = particles.bodies()[static_cast<std::size_t>(s.body)].position;
+    file.add(time, std::array{double(s.body), double(s.neighbour), x.x(), x.y(), x.z(), s.gap, s.centre});
+  }
 }
 
 void RunOutputs::report(nlohmann::ordered_json& result) const {

@@ -60,6 +60,7 @@ class RunOutputs {
   std::vector<std::unique_ptr<output::HistoryFile>> bodies_;
   std::vector<Probe> probes_;
   std::vector<Line> lines_;
+  std::vector<std::string> provenance_;
   std::unique_ptr<output::HistoryFile> energy_;
   std::optional<output::PvdSeries> air_, bodies_series_;
   std::vector<output::PvdSeries> slices_;

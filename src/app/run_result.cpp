@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "app/jet_source.hpp"
+#include "app/spacing.hpp"
 #include "base/parallel.hpp"
 #include "case/expression.hpp"
 
@@ -24,6 +25,7 @@ Json body_json(const CoupledModel& m, std::size_t b) {
   j["final_position_m"] = vector_json(body.position);
   j["final_velocity_m_s"] = vector_json(body.velocity);
   j["final_spin_rad_s"] = vector_json(body.angular_velocity);
+  j["final_spin_body_rad_s"] = vector_json(body.orientation.conjugate() * body.angular_velocity);
   const ContactPeaks& peaks = m.particles().peaks(static_cast<int>(b));
   j["max_overlap_m"] = peaks.overlap;
   j["max_contact_force_N"] = peaks.force;
@@ -180,7 +182,9 @@ Json make_result(const CoupledModel& m, double time, std::int64_t steps, double 
     r["ledger"]["bodies_energy_J"] = e.ledger();
     r["ledger"]["bodies_energy_scale_J"] = scale;
     r["ledger"]["dissipated_J"] = e.dissipated;
+    if (e.dissipated > 0.0) r["ledger"]["kinetic_over_dissipated"] = e.kinetic / e.dissipated;
   }
+  add_spacing(m.particles(), r);
   add_errors(m, time, r);
   for (const output::OperatorTime& op : operators)
     r["operators"].push_back(

@@ -17,7 +17,8 @@ struct RunOptions {
 
 struct BenchOptions {
   int threads = 0;
-  int steps = 20;  ///< timed steps
+  int steps = 20;    ///< timed steps
+  std::string only;  ///< "dem": bodies that touch; "settled": of these only settled spheres
 };
 
 /// Runs a case into its run directory. Returns an ExitCode.

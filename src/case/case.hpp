@@ -189,11 +189,13 @@ struct BodySpec {
   double diameter = 0.0;                       ///< sphere
   Vec3 size{0, 0, 0};                          ///< box, superquadric, cluster: full edge lengths, m
   std::vector<std::array<double, 4>> spheres;  ///< multisphere: x, y, z, radius in body axes
-  std::array<int, 3> cluster{3, 3, 3};    ///< spheres along each edge of the paper's cluster, inside `size`
-  double sphere_diameter = 0.0;           ///< cluster
-  std::vector<Vec3> vertices;             ///< polyhedron: convex hull of these
-  std::string file;                       ///< mesh: STL
-  double scale = 1.0;                     ///< of the mesh
+  std::array<int, 3> cluster{3, 3, 3};  ///< spheres along each edge of the paper's cluster, inside `size`
+  double sphere_diameter = 0.0;         ///< cluster
+  std::vector<Vec3> vertices;           ///< polyhedron: convex hull of these
+  std::string file;                     ///< mesh: STL; multisphere: STL to fit spheres to
+  std::vector<std::string> files;       ///< mesh: STL of each convex part
+  double fit_error = 0.0;  ///< m, multisphere: largest distance of the spheres' surface to `file`
+  double scale = 1.0;      ///< of the mesh
   std::array<double, 2> exponents{2, 2};  ///< superquadric
   std::string material;
   std::optional<double> density;  ///< kg/m3, else the material's
@@ -207,6 +209,12 @@ struct BodySpec {
   double rotation_angle = 0.0;  ///< rad
   double release_at = 0.0;      ///< s, body rests as placed until then
   bool on_belt = false;         ///< placed by [launch] instead of position/velocity
+  /// s, not there before, and not while another body is in its place; unset: there from the start
+  std::optional<double> enters_at;
+  int copies = 1;        ///< copies; more than one enter one after the other
+  double every = 0.0;    ///< s, between the copies
+  Vec3 spread{0, 0, 0};  ///< m, edges of the box about `position` in which copies are placed at random
+  bool random_rotation = false;  ///< copies are turned at random
 };
 
 /// [launch]: the free flight from the belt to the jet (paper 2.2.5). The body crosses the jet's axis
@@ -318,6 +326,12 @@ struct StreamSpec {
   double average_from = 0.0;    ///< s, means are taken from here on
 };
 
+/// [domain]: where bodies live
+struct DomainSpec {
+  std::vector<double> x, y, z;        ///< m, lower and upper; empty: without end
+  std::vector<std::string> periodic;  ///< "x", "y", "z"
+};
+
 struct Case {
   std::string path;  ///< of the file it came from; relative names inside are relative to it
   RunSpec run;
@@ -333,6 +347,7 @@ struct Case {
   std::vector<MaterialPairSpec> material_pairs;
   ContactSpec contact;
   std::vector<BodySpec> bodies;
+  DomainSpec domain;
   LaunchSpec launch;
   std::vector<WallSpec> walls;
   SplitterSpec splitter;

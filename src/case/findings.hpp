@@ -28,6 +28,7 @@ void sense_grid(const Case&, Findings&);
 void sense_boundaries(const Case&, Findings&);
 void sense_materials(const Case&, Findings&);
 void sense_shapes(const Case&, Findings&);
+void sense_domain(const Case&, Findings&);
 void sense_places(const Case&, Findings&);
 void sense_overlaps(const Case&, Findings&);
 void sense_walls(const Case&, Findings&);

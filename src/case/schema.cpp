@@ -60,6 +60,7 @@ std::vector<Section> sections(Case& c) {
            list("material_pair", "Overrides for the contact of two materials", c.material_pairs),
            table("contact", "How bodies touch", c.contact),
            list("body", "Bodies", c.bodies),
+           table("domain", "Where bodies live: they go when they leave it", c.domain),
            table("launch", "Flight from the belt to the jet", c.launch, &c.launch.enabled),
            list("wall", "Walls that bodies meet", c.walls),
            table("splitter", "The dividing plate", c.splitter, &c.splitter.enabled),

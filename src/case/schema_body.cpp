@@ -15,7 +15,7 @@ std::vector<Key> keys(MaterialSpec& s) {
       {"youngs_modulus", &s.youngs_modulus, pressure, positive, "Young's modulus", "paper, Table 2"},
       {"poisson_ratio", &s.poisson_ratio, none, {-1.0, 0.5, true}, "Poisson's ratio", "paper, Table 2"},
       {"density", &s.density, density, positive, "Density", "paper, Table 2"},
-      {"restitution", &s.restitution, none, {0.0, 1.0, true}, "Coefficient of restitution", "paper, Table 2"},
+      {"restitution", &s.restitution, none, {0.01, 1.0}, "Coefficient of restitution", "paper, Table 2"},
       {"friction", &s.friction, none, not_negative, "Coefficient of sliding friction", "paper, Table 2"},
       {"rolling_friction", &s.rolling_friction, none, not_negative, "Coefficient of rolling friction", ""}};
 }
@@ -27,7 +27,7 @@ std::vector<Key> keys(MaterialPairSpec& s) {
       {"restitution",
        &s.restitution,
        none,
-       {0.0, 1.0, true},
+       {0.01, 1.0},
        "Coefficient of restitution between the two",
        "",
        "combined"},
@@ -42,7 +42,7 @@ std::vector<Key> keys(ContactSpec& s) {
           {"time_step_fraction",
            &s.time_step_fraction,
            none,
-           {0.0, 1.0, true},
+           {0.0, 0.5, true},
            "Contact step over the smaller of Rayleigh and Hertz time",
            "usual 0.1 to 0.3"},
           {"time_step", &s.time_step, time, positive, "Fixed contact step", "", "from time_step_fraction",
@@ -89,9 +89,17 @@ std::vector<Key> keys(BodySpec& s) {
            R"([["0 mm", "0 mm", "0 mm"], ["9 mm", "0 mm", "0 mm"], ["0 mm", "9 mm", "0 mm"], ["0 mm", "0 mm", "9 mm"]])"},
       {.name = "file",
        .slot = &s.file,
-       .help = "Mesh: closed STL surface, beside the case file",
+       .help = "Mesh, or multisphere with fit_error: closed STL surface, beside the case file",
        .unset = "needed for a mesh",
        .example = "\"lump.stl\""},
+      {.name = "files",
+       .slot = &s.files,
+       .help = "Mesh that is not convex: STL of each convex part, instead of `file`",
+       .unset = "none",
+       .example = R"(["head.stl", "tail.stl"])"},
+      {"fit_error", &s.fit_error, length, not_negative,
+       "Multisphere: spheres are fitted into `file` until no point of its surface lies farther from them", "",
+       "needed to fit spheres", false, "\"0.5 mm\""},
       {"scale", &s.scale, none, positive, "Mesh: factor from the units of the file to metres (0.001 for mm)",
        ""},
       {"exponents", &s.exponents, none, positive,
@@ -113,8 +121,40 @@ std::vector<Key> keys(BodySpec& s) {
       {"rotation_angle", &s.rotation_angle, angle, anything,
        "Angle of the initial orientation about rotation_axis", ""},
       {"release_at", &s.release_at, time, not_negative, "The body rests as placed until then", ""},
+      {"enters_at", &s.enters_at, time, not_negative,
+       "The body is not there before, and waits while another is in its place", "", "there from the start",
+       false, "\"0.5 s\""},
+      {"copies",
+       &s.copies,
+       none,
+       {1, 1000000},
+       "Copies of the body; more than one enter one after the other",
+       ""},
+      {"every", &s.every, time, not_negative, "Time between the copies", ""},
+      {"spread", &s.spread, length, not_negative,
+       "Edges of the box about `position` in which copies are placed at random", ""},
+      {"random_rotation", &s.random_rotation, none, anything, "Copies are turned at random", ""},
       {"on_belt", &s.on_belt, none, anything,
        "Comes from the belt by [launch], which gives position and velocity", ""}};
+}
+
+std::vector<Key> keys(DomainSpec& s) {
+  const auto extent = [](const char* axis, std::vector<double>* slot) {
+    return Key{.name = axis,
+               .slot = slot,
+               .dimension = length,
+               .help = std::string("Lower and upper end in ") + axis,
+               .unset = "without end",
+               .example = R"(["0 mm", "200 mm"])"};
+  };
+  return {extent("x", &s.x),
+          extent("y", &s.y),
+          extent("z", &s.z),
+          {.name = "periodic",
+           .slot = &s.periodic,
+           .help = "Directions in which a body that leaves comes back on the other side",
+           .unset = "none",
+           .example = R"(["y"])"}};
 }
 
 std::vector<Key> keys(WallSpec& s) {
@@ -128,7 +168,7 @@ std::vector<Key> keys(WallSpec& s) {
           {"normal", &s.normal, none, anything, "Direction towards the bodies", ""},
           {"size", &s.size, length, not_negative,
            "Plate and belt: extents along the two tangents and thickness; box: edges", "",
-           "needed for plate, belt, box"},
+           "needed for plate and box; a belt is endless"},
           {"velocity", &s.velocity, velocity, anything, "Velocity of the surface", ""},
           {.name = "material",
            .slot = &s.material,

@@ -72,6 +72,10 @@ void check_shape(const Case& c, const BodySpec& b, const std::string& key, Findi
                     "cluster = [3, 3, 3]");
       break;
     case ShapeKind::multisphere:
+      if (b.fit_error > 0.0) {
+        require_file(c, key + ".file", b.file, "multisphere that is fitted", found);
+        break;
+      }
       if (b.spheres.empty())
         found.error(key + ".spheres", "a multisphere needs its spheres", "a list of [x, y, z, radius]",
                     R"(spheres = [["0 mm", "0 mm", "0 mm", "5 mm"]])");
@@ -84,7 +88,10 @@ void check_shape(const Case& c, const BodySpec& b, const std::string& key, Findi
         found.error(key + ".vertices", "these points span no volume", "at least 4 points, not in one plane");
       break;
     case ShapeKind::mesh:
-      require_file(c, key + ".file", b.file, "mesh", found);
+      if (b.files.empty()) require_file(c, key + ".file", b.file, "mesh", found);
+      if (!b.files.empty() && !b.file.empty())
+        found.error(key + ".files", "a mesh has either `file` or `files`", "one of them");
+      for (const std::string& file : b.files) require_file(c, key + ".files", file, "mesh", found);
       break;
   }
 }
@@ -125,10 +132,39 @@ void sense_shapes(const Case& c, Findings& found) {
     if (b.true_box_mass && b.shape != ShapeKind::cluster)
       found.error(key + ".true_box_mass", "only a cluster stands for a box", "false, or shape = \"cluster\"",
                   "shape = \"cluster\"");
+    if (b.copies > 1 && (b.on_belt || b.motion == Motion::fixed))
+      found.error(key + ".copies", "copies of a body that stays where it is would be inside each other",
+                  "copies = 1, or a free body that is not on_belt", "copies = 1");
+    if ((b.copies > 1 || b.enters_at) && c.flow.solver != FlowSolver::none)
+      found.error(key + (b.copies > 1 ? ".copies" : ".enters_at"),
+                  "bodies can only enter where nothing flows",
+                  "flow.solver = \"none\", or bodies that are there from the start", "solver = \"none\"");
     if (b.release_at > c.run.end_time)
       found.warning(key + ".release_at", "the body is never released: the run ends before",
                     "a time before run.end_time");
   }
+}
+
+void sense_domain(const Case& c, Findings& found) {
+  const std::vector<double>* extents[] = {&c.domain.x, &c.domain.y, &c.domain.z};
+  for (std::size_t a = 0; a < 3; ++a) {
+    const std::vector<double>& e = *extents[a];
+    const std::string axis(1, "xyz"[a]), key = "domain." + axis;
+    if (!e.empty() && (e.size() != 2 || !(e[0] < e[1])))
+      found.error(key, "an extent is a lower and an upper end", "2 lengths, the first the smaller",
+                  axis + " = [\"0 mm\", \"200 mm\"]");
+    const auto& p = c.domain.periodic;
+    if (e.empty() && std::find(p.begin(), p.end(), axis) != p.end())
+      found.error("domain.periodic", fmt::format("periodic in {}, but without ends there", axis),
+                  fmt::format("[domain] {} = [lower, upper]", axis), axis + " = [\"0 mm\", \"200 mm\"]");
+  }
+  for (const std::string& name : c.domain.periodic)
+    if (name != "x" && name != "y" && name != "z")
+      found.error("domain.periodic", fmt::format("there is no direction \"{}\"", name),
+                  "\"x\", \"y\" or \"z\"", "periodic = [\"y\"]");
+  if (!c.domain.periodic.empty() && c.flow.solver != FlowSolver::none)
+    found.error("domain.periodic", "bodies cannot cross periodic sides where something flows",
+                "flow.solver = \"none\"", "solver = \"none\"");
 }
 
 void sense_walls(const Case& c, Findings& found) {
@@ -141,9 +177,10 @@ void sense_walls(const Case& c, Findings& found) {
       found.error(key + ".normal", "a wall without direction", "a list of 3 numbers, not all 0",
                   "normal = [0, 0, 1]");
     if (w.kind == WallKind::mesh) require_file(c, key + ".file", w.file, "mesh", found);
-    const int flat = w.kind == WallKind::box                                 ? 3
-                     : w.kind == WallKind::plate || w.kind == WallKind::belt ? 2
-                                                                             : 0;
+    const bool endless = w.kind == WallKind::belt && w.size.isZero();
+    const int flat = w.kind == WallKind::box                                               ? 3
+                     : w.kind == WallKind::plate || (w.kind == WallKind::belt && !endless) ? 2
+                                                                                           : 0;
     if ((flat == 3 && w.size.minCoeff() <= 0.0) || (flat == 2 && w.size.head<2>().minCoeff() <= 0.0))
       found.error(key + ".size", fmt::format("a wall of kind \"{}\" needs its extents", word(w.kind)),
                   "a list of 3 lengths", R"(size = ["100 mm", "100 mm", "2 mm"])");

@@ -95,6 +95,8 @@ void sense_overlaps(const Case& c, Findings& found) {
   for (std::size_t i = 0; i < solids.size(); ++i)
     for (std::size_t j = 0; j < i; ++j) {
       if (c.bodies[i].on_belt != c.bodies[j].on_belt) continue;
+      const auto comes_later = [](const BodySpec& b) { return b.enters_at || b.copies > 1; };
+      if (comes_later(c.bodies[i]) || comes_later(c.bodies[j])) continue;
       const double depth = overlap(solids[i], solids[j]);
       if (depth > allowed * std::min(smallest_radius(solids[i]), smallest_radius(solids[j])))
         found.error(fmt::format("body.{}.position", i),

@@ -115,14 +115,24 @@ EJECTA_INLINE bool none(Index mask) {
   return (mask[0] | mask[1]) == 0;
 }
 
+/// A distance to the nearest image; a period of 0 leaves it as it is.
+EJECTA_INLINE Lanes nearest(const Lanes& d, double period) {
+  if (!(period > 0)) return d;
+  constexpr double to_whole = 6755399441055744.0;  // 1.5 x 2^52: adding it rounds
+  const Lanes whole = (d / period + to_whole) - to_whole;
+  return d - period * whole;
+}
+
 }  // namespace
 
 template <class Law, bool Rolling, bool Planes>
-void BallContacts::compute_groups(const Parts& parts, const Materials& materials, double dt) {
+void BallContacts::compute_groups(const Parts& parts, const Materials& materials, const Domain& domain,
+                                  double dt) {
   const BallRow *balls = parts.rows().data(), *others = Planes ? planes_.data() : balls;
   const std::size_t from = Planes ? at(planes_from_) : 0, to = Planes ? a_.size() : at(planes_from_);
   const int groups = static_cast<int>((to - from) / kLanes);
   const bool one_material = materials.count() == 1, allow_tension = materials.allow_tension();
+  const bool periodic = domain.periodic();
   constexpr int same[kLanes] = {};
   const BallRow any;
   PairConstants<Lanes> constants;
@@ -141,7 +151,12 @@ void BallContacts::compute_groups(const Parts& parts, const Materials& materials
       c.mass = (Lanes{} + 1.0) / a.inverse_mass;
       arms = (a.radius - 0.5 * c.overlap) * a.spin;
     } else {
-      const Triple<Lanes> apart = a.centre - b.centre;
+      Triple<Lanes> apart = a.centre - b.centre;
+      if (periodic) {
+        apart.x = nearest(apart.x, domain.period.x());
+        apart.y = nearest(apart.y, domain.period.y());
+        apart.z = nearest(apart.z, domain.period.z());
+      }
       const Lanes distance = root(dot(apart, apart));
       const Lanes radii = a.radius + b.radius, masses = a.inverse_mass + b.inverse_mass;
       // Divisions take longest: one for three.
@@ -201,19 +216,20 @@ void BallContacts::compute_groups(const Parts& parts, const Materials& materials
 }
 
 template <class Law, bool Rolling>
-void BallContacts::compute_all(const Parts& parts, const Materials& materials, double dt) {
-  compute_groups<Law, Rolling, false>(parts, materials, dt);
-  compute_groups<Law, Rolling, true>(parts, materials, dt);
+void BallContacts::compute_all(const Parts& parts, const Materials& materials, const Domain& domain,
+                               double dt) {
+  compute_groups<Law, Rolling, false>(parts, materials, domain, dt);
+  compute_groups<Law, Rolling, true>(parts, materials, domain, dt);
 }
 
-void BallContacts::compute(const Parts& parts, const Materials& materials, double dt) {
+void BallContacts::compute(const Parts& parts, const Materials& materials, const Domain& domain, double dt) {
   rolling_ = materials.any_rolling();
   if (materials.law() == ContactLaw::linear)
-    rolling_ ? compute_all<LinearSpring, true>(parts, materials, dt)
-             : compute_all<LinearSpring, false>(parts, materials, dt);
+    rolling_ ? compute_all<LinearSpring, true>(parts, materials, domain, dt)
+             : compute_all<LinearSpring, false>(parts, materials, domain, dt);
   else
-    rolling_ ? compute_all<HertzMindlin, true>(parts, materials, dt)
-             : compute_all<HertzMindlin, false>(parts, materials, dt);
+    rolling_ ? compute_all<HertzMindlin, true>(parts, materials, domain, dt)
+             : compute_all<HertzMindlin, false>(parts, materials, domain, dt);
 }
 
 double BallContacts::wall_power() const {

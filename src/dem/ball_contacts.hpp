@@ -4,6 +4,7 @@
 #include <utility>
 #include <vector>
 
+#include "dem/domain.hpp"
 #include "dem/materials.hpp"
 #include "dem/parts.hpp"
 #include "dem/sphere_state.hpp"
@@ -28,7 +29,7 @@ class BallContacts {
   using Pairs = std::span<const std::pair<int, int>>;
   void set_pairs(Pairs balls, Pairs planes, std::span<const Wall> walls, int ball_count);
   /// Evaluates the law on every pair and moves the histories over dt.
-  void compute(const Parts& parts, const Materials& materials, double dt);
+  void compute(const Parts& parts, const Materials& materials, const Domain& domain, double dt);
   /// Adds the force and the torque about the ball's centre that act on it. Returns its largest half overlap,
   /// m.
   double gather(int ball, double radius, Vec4& force, Vec4& torque) const;
@@ -52,9 +53,9 @@ class BallContacts {
   void arrange(Pairs balls, Pairs planes, int ball_count);
   void index_pairs(int balls);
   template <class Law, bool Rolling>
-  void compute_all(const Parts& parts, const Materials& materials, double dt);
+  void compute_all(const Parts& parts, const Materials& materials, const Domain& domain, double dt);
   template <class Law, bool Rolling, bool Planes>
-  void compute_groups(const Parts& parts, const Materials& materials, double dt);
+  void compute_groups(const Parts& parts, const Materials& materials, const Domain& domain, double dt);
 
   // Pairs of balls, padded to whole lanes with the ball that touches nothing; then those with planes, with
   // the wall as b, padded likewise.

@@ -1,13 +1,24 @@
 #include "dem/body.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <filesystem>
 
 #include "base/error.hpp"
+#include "shape/fit_spheres.hpp"
 #include "shape/stl.hpp"
 
 namespace ejecta {
+namespace {
+
+void add(TriangleMesh& mesh, const TriangleMesh& more) {
+  const int first = static_cast<int>(mesh.vertices.size());
+  mesh.vertices.insert(mesh.vertices.end(), more.vertices.begin(), more.vertices.end());
+  for (const auto& t : more.triangles) mesh.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+}
+
+}  // namespace
 
 Shape make_shape(const BodySpec& spec, const std::string& directory) {
   switch (spec.shape) {
@@ -18,6 +29,11 @@ Shape make_shape(const BodySpec& spec, const std::string& directory) {
     case ShapeKind::cluster:
       return make_cluster(spec.size, spec.cluster, spec.sphere_diameter);
     case ShapeKind::multisphere: {
+      if (spec.fit_error > 0) {
+        const std::string path = (std::filesystem::path(directory) / spec.file).string();
+        const TriangleMesh mesh = read_stl(path, spec.scale);
+        return make_multisphere(fit_spheres(mesh, spec.fit_error, path), mass_mesh(mesh));
+      }
       std::vector<Ball> balls;
       for (const auto& s : spec.spheres) balls.push_back({Vec3(s[0], s[1], s[2]), s[3]});
       return make_multisphere(balls);
@@ -25,8 +41,14 @@ Shape make_shape(const BodySpec& spec, const std::string& directory) {
     case ShapeKind::polyhedron:
       return make_polyhedron(spec.vertices);
     case ShapeKind::mesh: {
-      const std::string path = (std::filesystem::path(directory) / spec.file).string();
-      return make_mesh(read_stl(path, spec.scale), path);
+      const std::filesystem::path folder(directory);
+      if (spec.files.empty()) {
+        const std::string path = (folder / spec.file).string();
+        return make_mesh(read_stl(path, spec.scale), path);
+      }
+      TriangleMesh all;
+      for (const std::string& file : spec.files) add(all, read_stl((folder / file).string(), spec.scale));
+      return make_mesh(all, fmt::format("{}", fmt::join(spec.files, " + ")));
     }
     case ShapeKind::superquadric:
       return make_superquadric(spec.size, spec.exponents[0], spec.exponents[1]);
@@ -48,6 +70,7 @@ Body make_body(const BodySpec& spec, const Materials& materials, const std::stri
     body.inertia = body.mass / unit.volume * unit.inertia.diagonal();
     body.motion = spec.motion;
     body.release_at = spec.release_at;
+    body.enters_at = spec.enters_at;
     body.position = spec.position;
     if (!(spec.rotation_axis.norm() > 0)) throw InputError("rotation_axis must not be zero");
     body.orientation = Quat(Eigen::AngleAxisd(spec.rotation_angle, spec.rotation_axis.normalized())) *

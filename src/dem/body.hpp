@@ -1,4 +1,5 @@
 #pragma once
+#include <optional>
 #include <string>
 
 #include "base/vec.hpp"
@@ -18,6 +19,7 @@ struct Body {
   int material = 0;       ///< index into the materials
   Motion motion = Motion::free;
   double release_at = 0.0;              ///< s; until then the body rests as placed
+  std::optional<double> enters_at;      ///< s; until then, and while its place is taken, it is not there
   Vec3 position{0, 0, 0};               ///< m, centre of mass
   Quat orientation = Quat::Identity();  ///< body axes -> world
   Vec3 velocity{0, 0, 0};               ///< m/s

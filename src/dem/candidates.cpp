@@ -13,58 +13,69 @@ bool near_solid(const NeighbourSearch::Item& item, const Polytope& solid, double
                      [&](const Polytope::Face& f) { return f.normal.dot(item.centre) - f.offset < reach; });
 }
 
+/// `part`: a ball, or a polytope counted after all balls.
+PartKey key_of(int part, int balls) {
+  return part < balls ? PartKey{PartKind::ball, part, 0} : PartKey{PartKind::polytope, part - balls, 0};
+}
+
 }  // namespace
 
-void CandidateSearch::find(const Parts& parts, std::span<const Body> bodies, std::span<const Wall> walls,
-                           double skin) {
-  const int balls = parts.ball_count();
+void CandidateSearch::list_parts(const Parts& parts, std::span<const Body> bodies) {
   items_.clear();
-  can_be_pushed_.clear();
+  part_of_.clear();
+  const int balls = parts.ball_count();
   for (int n = 0; n < balls; ++n) {
     const BallRow& row = parts.row(n);
+    if (!parts.here(parts.body_of_ball(n))) continue;
     items_.push_back({row.centre(), row.radius, parts.body_of_ball(n)});
-    can_be_pushed_.push_back(row.inverse_mass > 0);
+    part_of_.push_back({n, row.inverse_mass > 0});
   }
   for (int n = 0; n < parts.polytope_count(); ++n) {
     const PolytopePart& p = parts.polytope(n);
+    if (!parts.here(p.body)) continue;
     const Body& body = bodies[static_cast<std::size_t>(p.body)];
     items_.push_back({body.to_world(p.solid->centre), p.solid->radius, p.body});
-    can_be_pushed_.push_back(inverse_mass(body) > 0);
+    part_of_.push_back({balls + n, inverse_mass(body) > 0});
   }
-  const auto key_of = [&](int item) {
-    return item < balls ? PartKey{PartKind::ball, item, 0} : PartKey{PartKind::polytope, item - balls, 0};
-  };
-  const auto body_of = [&](int item) { return items_[static_cast<std::size_t>(item)].body; };
-  const auto pushed = [&](int item) { return can_be_pushed_[static_cast<std::size_t>(item)]; };
+}
 
-  balls_.clear();
-  planes_.clear();
-  solids_.clear();
-  for (const auto& [i, j] : search_.find(items_, skin)) {
-    if (!pushed(i) && !pushed(j)) continue;
-    if (j < balls) {
-      balls_.emplace_back(i, j);
-    } else {
-      SolidPair& pair = solids_.emplace_back();
-      pair.a = key_of(i);
-      pair.b = key_of(j);
-      pair.body_a = body_of(i);
-      pair.body_b = body_of(j);
-    }
+void CandidateSearch::add_images(const Domain& domain, double skin) {
+  double largest = 0.0;
+  for (const auto& item : items_) largest = std::max(largest, item.radius);
+  const double margin = 2 * largest + skin;
+  for (int c = 0; c < 3; ++c) {
+    if (!(domain.period[c] > 0)) continue;
+    const std::size_t count = items_.size();  // images of images make those across edges and corners
+    for (std::size_t n = 0; n < count; ++n)
+      for (const double side : {1.0, -1.0}) {
+        const double x = items_[n].centre[c];
+        if ((side > 0 ? x - domain.low[c] : domain.high[c] - x) > margin) continue;
+        Part part = part_of_[n];
+        NeighbourSearch::Item item = items_[n];
+        part.image = true;
+        part.shift[c] += side * domain.period[c];
+        item.centre[c] += side * domain.period[c];
+        items_.push_back(item);
+        part_of_.push_back(part);
+      }
   }
-  for (int n = 0; n < static_cast<int>(items_.size()); ++n) {
-    if (!pushed(n)) continue;
-    const NeighbourSearch::Item& item = items_[static_cast<std::size_t>(n)];
+}
+
+void CandidateSearch::list_walls(std::span<const Wall> walls, int balls, double skin) {
+  for (std::size_t n = 0; n < items_.size() && !part_of_[n].image; ++n) {
+    if (!part_of_[n].can_be_pushed) continue;
+    const NeighbourSearch::Item& item = items_[n];
+    const int part = part_of_[n].index;
     const auto list = [&](const PartKey& wall) {
       SolidPair& pair = solids_.emplace_back();
-      pair.a = key_of(n);
+      pair.a = key_of(part, balls);
       pair.b = wall;
       pair.body_a = item.body;
     };
     for (int w = 0; w < static_cast<int>(walls.size()); ++w) {
       const Wall& wall = walls[static_cast<std::size_t>(w)];
       if (wall.is_plane && wall.normal.dot(item.centre) - wall.offset < item.radius + skin) {
-        if (n < balls) planes_.emplace_back(n, w);
+        if (part < balls) planes_.emplace_back(part, w);
         else list({PartKind::wall_plane, w, 0});
       }
       for (int s = 0; s < static_cast<int>(wall.solids.size()); ++s)
@@ -72,8 +83,43 @@ void CandidateSearch::find(const Parts& parts, std::span<const Body> bodies, std
           list({PartKind::wall_solid, w, s});
     }
   }
-  std::sort(solids_.begin(), solids_.end(),
-            [](const SolidPair& p, const SolidPair& q) { return std::tie(p.a, p.b) < std::tie(q.a, q.b); });
+}
+
+void CandidateSearch::find(const Parts& parts, std::span<const Body> bodies, std::span<const Wall> walls,
+                           const Domain& domain, double skin) {
+  list_parts(parts, bodies);
+  if (domain.periodic()) add_images(domain, skin);
+  const int balls = parts.ball_count();
+  balls_.clear();
+  planes_.clear();
+  solids_.clear();
+  for (auto [i, j] : search_.find(items_, skin)) {
+    if (part_of_[static_cast<std::size_t>(i)].index > part_of_[static_cast<std::size_t>(j)].index)
+      std::swap(i, j);
+    const Part &a = part_of_[static_cast<std::size_t>(i)], &b = part_of_[static_cast<std::size_t>(j)];
+    if ((!a.can_be_pushed && !b.can_be_pushed) || (a.image && b.image)) continue;
+    if (b.index < balls) {
+      balls_.emplace_back(a.index, b.index);
+    } else {
+      SolidPair& pair = solids_.emplace_back();
+      pair.a = key_of(a.index, balls);
+      pair.b = key_of(b.index, balls);
+      pair.body_a = items_[static_cast<std::size_t>(i)].body;
+      pair.body_b = items_[static_cast<std::size_t>(j)].body;
+      pair.shift = b.shift - a.shift;
+    }
+  }
+  list_walls(walls, balls, skin);
+  const auto before = [](const SolidPair& p, const SolidPair& q) {
+    return std::tie(p.a, p.b) < std::tie(q.a, q.b);
+  };
+  const auto same = [](const SolidPair& p, const SolidPair& q) { return p.a == q.a && p.b == q.b; };
+  std::sort(solids_.begin(), solids_.end(), before);
+  if (!domain.periodic()) return;
+  // A pair across a side was found from both.
+  std::sort(balls_.begin(), balls_.end());
+  balls_.erase(std::unique(balls_.begin(), balls_.end()), balls_.end());
+  solids_.erase(std::unique(solids_.begin(), solids_.end(), same), solids_.end());
 }
 
 }  // namespace ejecta

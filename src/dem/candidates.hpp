@@ -3,6 +3,7 @@
 #include <utility>
 #include <vector>
 
+#include "dem/domain.hpp"
 #include "dem/neighbours.hpp"
 #include "dem/parts.hpp"
 #include "dem/solid_contacts.hpp"
@@ -13,15 +14,26 @@ namespace ejecta {
 /// of it. Pairs of which neither side can be pushed are left out. Keeps its buffers.
 class CandidateSearch {
  public:
-  void find(const Parts& parts, std::span<const Body> bodies, std::span<const Wall> walls, double skin);
+  void find(const Parts& parts, std::span<const Body> bodies, std::span<const Wall> walls,
+            const Domain& domain, double skin);
   std::span<const std::pair<int, int>> balls() const { return balls_; }    ///< indices of balls
   std::span<const std::pair<int, int>> planes() const { return planes_; }  ///< ball, wall that is a plane
   std::vector<SolidPair>& solids() { return solids_; }
 
  private:
+  /// A part, or its image across a periodic side.
+  struct Part {
+    int index = 0;  // of a ball, or of a polytope after all balls
+    bool can_be_pushed = true, image = false;
+    Vec3 shift{0, 0, 0};  // m, from the part to its image
+  };
+  void list_parts(const Parts& parts, std::span<const Body> bodies);
+  void add_images(const Domain& domain, double skin);
+  void list_walls(std::span<const Wall> walls, int balls, double skin);
+
   NeighbourSearch search_;
   std::vector<NeighbourSearch::Item> items_;
-  std::vector<char> can_be_pushed_;  // of items
+  std::vector<Part> part_of_;  // each item
   std::vector<std::pair<int, int>> balls_, planes_;
   std::vector<SolidPair> solids_;
 };

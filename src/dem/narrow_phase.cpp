@@ -82,7 +82,7 @@ Touch find_touch(const SolidPair& pair, const Parts& parts, std::span<const Body
     }
     const Body& other = body_of(pair.body_b);
     return touch_ball_polytope(ball, *parts.polytope(pair.b.index).solid,
-                               other.orientation.toRotationMatrix(), other.position);
+                               other.orientation.toRotationMatrix(), other.position + pair.shift);
   }
   const PolytopePart& part = parts.polytope(pair.a.index);
   const Body& body = body_of(pair.body_a);
@@ -109,7 +109,7 @@ Touch find_touch(const SolidPair& pair, const Parts& parts, std::span<const Body
   const Body& other = body_of(pair.body_b);
   return touch_of(overlap_polytopes(*part.solid, *other_part.solid,
                                     turn.transpose() * other.orientation.toRotationMatrix(),
-                                    turn.transpose() * (other.position - body.position)),
+                                    turn.transpose() * (other.position + pair.shift - body.position)),
                   std::min(part.radius, other_part.radius), turn, body.position);
 }
 

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "base/error.hpp"
+#include "base/stopwatch.hpp"
 #include "dem/blocks.hpp"
 #include "dem/rotation.hpp"
 #include "dem/time_step.hpp"
@@ -26,17 +27,20 @@ void note_peak(ContactPeaks& p, double overlap, double force_squared, double dt)
 
 }  // namespace
 
-Particles::Particles(const Vec3& gravity, Materials materials, const ContactSpec& contact)
-    : gravity_(gravity), materials_(std::move(materials)), contact_(contact) {}
+Particles::Particles(const Vec3& gravity, Materials materials, const ContactSpec& contact,
+                     const Domain& domain)
+    : gravity_(gravity), materials_(std::move(materials)), contact_(contact), domain_(domain) {}
 
-bool Particles::moves(const Body& body) const {
-  return body.motion != Motion::fixed && time_ >= body.release_at * (1 - 1e-12);
+bool Particles::moves(std::size_t n) const {
+  const Body& b = bodies_[n];
+  return b.motion != Motion::fixed && presence_[n] == Presence::here && time_ >= b.release_at * (1 - 1e-12);
 }
 
 double Particles::stable_dt() const {
   if (contact_.time_step) return *contact_.time_step;
   double fastest = kSlowest;
-  for (const Body& b : bodies_) fastest = std::max(fastest, b.velocity.norm());
+  for (std::size_t n = 0; n < bodies_.size(); ++n)
+    if (presence_[n] == Presence::here) fastest = std::max(fastest, bodies_[n].velocity.norm());
   double time = 1.0;
   for (const Body& b : bodies_)
     if (b.motion == Motion::free) time = std::min(time, contact_time(b, materials_, fastest));
@@ -47,6 +51,7 @@ double Particles::stable_dt() const {
 /// The kick that ends a sub-step and the one that begins the next are one pass over the bodies.
 void Particles::advance(double dt, std::span<const Load> loads) {
   if (!(dt > 0)) return;
+  enter_and_leave();
   const int steps = std::max(1, static_cast<int>(std::ceil(dt / stable_dt() * (1 - 1e-12))));
   const double start = time_, step = dt / steps;
   pack_spheres();
@@ -54,7 +59,6 @@ void Particles::advance(double dt, std::span<const Load> loads) {
   move_bodies(step, loads, false, true);
   for (int n = 1; n <= steps; ++n) {
     find_contacts(step);
-    collect_solids();
     time_ = start + dt * n / steps;
     move_bodies(step, loads, true, n < steps);
     add_work(n < steps ? step : 0.5 * step);
@@ -77,8 +81,8 @@ void Particles::pack_spheres() {
   packed_.resize(bodies_.size());
   for (std::size_t n = 0; n < bodies_.size(); ++n) {
     const Body& b = bodies_[n];
-    if (moves(b)) release(n);
-    packed_[n] = b.motion == Motion::free && moves(b) && parts_.is_sphere(static_cast<int>(n));
+    if (moves(n)) release(n);
+    packed_[n] = b.motion == Motion::free && moves(n) && parts_.is_sphere(static_cast<int>(n));
     if (packed_[n])
       spheres_[n] = {vec4(b.velocity) + Vec4{0, 0, 0, 1 / b.mass},
                      vec4(momentum_[n]) + Vec4{0, 0, 0, 1 / b.inertia[0]},
@@ -111,6 +115,7 @@ Vec3 Particles::torque_on(std::size_t n, std::span<const Load> loads) const {
 }
 
 void Particles::move_bodies(double dt, std::span<const Load> loads, bool kick, bool drift) {
+  ScopedTimer timer(times_.motion);
   const int count = static_cast<int>(bodies_.size());
   const Vec4 gravity = vec4(gravity_);
   block_moved_.resize(static_cast<std::size_t>(block_count(count, kBlock)));
@@ -180,7 +185,7 @@ double Particles::drift_body(int index, std::span<const Load> loads, double dt) 
   const std::size_t n = static_cast<std::size_t>(index);
   Body& b = bodies_[n];
   double moved = 0.0;
-  if (moves(b)) {
+  if (moves(n)) {
     release(n);
     const bool pushed = b.motion == Motion::free;
     const Vec3 kick = pushed ? Vec3(0.5 * dt * acceleration(n, loads)) : Vec3(0, 0, 0);
@@ -213,8 +218,13 @@ void Particles::find_contacts(double dt) {
   }
   if (!(moved.sum < std::numeric_limits<double>::infinity())) throw_diverged();
   if (relist_ || moved.first + moved.second > skin_) list_candidates(dt);
-  balls_.compute(parts_, materials_, dt);
+  {
+    ScopedTimer timer(times_.balls);
+    balls_.compute(parts_, materials_, domain_, dt);
+  }
+  ScopedTimer timer(times_.solids);
   solids_.compute(parts_, bodies_, walls_, materials_, velocity_, spin_, dt);
+  collect_solids();
 }
 
 void Particles::throw_diverged() const {
@@ -232,6 +242,8 @@ void Particles::throw_diverged() const {
 }
 
 void Particles::list_candidates(double dt) {
+  ScopedTimer timer(times_.listing);
+  ++lists_;
   double fastest = 0.0;
   for (std::size_t n = 0; n < bodies_.size(); ++n) {
     if (packed_[n]) {
@@ -248,16 +260,15 @@ void Particles::list_candidates(double dt) {
   // often, in inverse proportion. The cheapest, with the factor measured on settling spheres, is
   skin_ = std::clamp(2.8 * std::sqrt(fastest * dt * smallest_), 0.01 * smallest_, smallest_);
   relist_ = false;
-  search_.find(parts_, bodies_, walls_, skin_);
+  search_.find(parts_, bodies_, walls_, domain_, skin_);
   balls_.set_pairs(search_.balls(), search_.planes(), walls_, parts_.ball_count());
   solids_.set_pairs(search_.solids());
 }
 
 /// Forces of contacts in which walls and polytopes take part, body by body in the order of the contacts.
 void Particles::collect_solids() {
-  solids_.gather([&](int body, const Vec3& force, const Vec3& moment, const Touch& touch) {
+  solids_.gather([&](int body, const Vec3& force, const Vec3& moment, const Vec3& point, const Touch& touch) {
     const std::size_t n = static_cast<std::size_t>(body);
-    const Vec3& point = touch.point;
     peaks_[n].overlap = std::max(peaks_[n].overlap, touch.thickness > 0 ? touch.thickness : touch.overlap);
     const Vec3 centre = packed_[n] ? parts_.sphere_row(body).centre() : bodies_[n].position;
     force_[n] += force;
@@ -278,7 +289,7 @@ void Particles::kick_body(int index, std::span<const Load> loads, double dt, Wor
     torque_[n] += vec3(torque) + (row.centre() - b.position).cross(vec3(force));
   }
   note_peak(peaks_[n], 2 * deepest, force_[n].squaredNorm(), dt);
-  if (b.motion == Motion::fixed || launches_[n].waiting) return;
+  if (b.motion == Motion::fixed || launches_[n].waiting || presence_[n] != Presence::here) return;
   const bool pushed = b.motion == Motion::free;
   if (pushed) {
     b.velocity += 0.5 * dt * acceleration(n, loads);

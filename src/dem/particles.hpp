@@ -1,11 +1,13 @@
 #pragma once
 #include <algorithm>
+#include <cstdint>
 #include <span>
 #include <vector>
 
 #include "dem/ball_contacts.hpp"
 #include "dem/body.hpp"
 #include "dem/candidates.hpp"
+#include "dem/domain.hpp"
 #include "dem/loads.hpp"
 #include "dem/materials.hpp"
 #include "dem/parts.hpp"
@@ -39,14 +41,25 @@ struct ContactPeaks {
   double time = 0.0;     ///< s in contact
 };
 
+/// Whether a body is there.
+enum class Presence : char { waiting, here, gone };
+
+/// Time spent in each part of a step, s.
+struct DemTimes {
+  double listing = 0.0;  ///< candidates
+  double balls = 0.0;    ///< contacts of balls with balls and planes
+  double solids = 0.0;   ///< all other contacts
+  double motion = 0.0;   ///< sums of forces, integration
+};
+
 /// All bodies that move and touch, with their walls. Advances itself; knows no fluid.
 class Particles {
  public:
-  Particles(const Vec3& gravity, Materials materials, const ContactSpec& contact);
+  Particles(const Vec3& gravity, Materials materials, const ContactSpec& contact, const Domain& domain = {});
 
   /// Moves all bodies over dt (s) in equal sub-steps no longer than stable_dt(); gravity acts, loads[i] acts
-  /// on body i and is held constant (empty: none). Throws DivergedError naming a body whose motion is no
-  /// number.
+  /// on body i and is held constant (empty: none). Bodies enter and leave at its beginning. Throws
+  /// DivergedError naming a body whose motion is no number.
   void advance(double dt, std::span<const Load> loads = {});
   /// The largest sub-step, s: contact.time_step or the stated fraction of the shortest contact time.
   double stable_dt() const;
@@ -58,7 +71,11 @@ class Particles {
   /// N, of all contacts of a body at the last sub-step.
   const Vec3& contact_force(int index) const { return force_[static_cast<std::size_t>(index)]; }
   const ContactPeaks& peaks(int index) const { return peaks_[static_cast<std::size_t>(index)]; }
+  Presence presence(int index) const { return presence_[static_cast<std::size_t>(index)]; }
+  const Domain& domain() const { return domain_; }
   std::vector<ContactRecord> contacts() const;
+  std::int64_t lists() const { return lists_; }  ///< of candidates made so far
+  const DemTimes& times() const { return times_; }
   DemEnergy energy() const;
 
   /// Returns the index of the new body.
@@ -90,7 +107,11 @@ class Particles {
   void unpack_spheres();
   void add_work(double dt);
   void find_contacts(double dt);
-  bool moves(const Body& body) const;
+  bool moves(std::size_t n) const;
+  void enter_and_leave();
+  void show(std::size_t n, Presence presence);
+  bool place_is_free(std::size_t n) const;
+  double mechanical_energy(std::size_t n) const;
   Vec3 acceleration(std::size_t n, std::span<const Load> loads) const;
   Vec3 torque_on(std::size_t n, std::span<const Load> loads) const;
   void list_candidates(double dt);
@@ -99,6 +120,7 @@ class Particles {
   Vec3 gravity_;
   Materials materials_;
   ContactSpec contact_;
+  Domain domain_;
   double time_ = 0.0;
   std::vector<Body> bodies_;
   std::vector<Wall> walls_;
@@ -107,6 +129,7 @@ class Particles {
   std::vector<Vec3> velocity_, spin_;  // as the contact laws see them: extrapolated to the whole step
   std::vector<SphereState> spheres_;   // of bodies that are free spheres, in advance()
   std::vector<ContactPeaks> peaks_;
+  std::vector<Presence> presence_;
   struct Launch {
     bool waiting = false;
     Vec3 velocity{0, 0, 0}, spin{0, 0, 0};
@@ -136,6 +159,8 @@ class Particles {
   double skin_ = 0.0;      // m, candidates are pairs with gap < skin
   double smallest_ = 0.0;  // m, of the bounding radii
   bool relist_ = true;
+  std::int64_t lists_ = 0;
+  DemTimes times_;
   double contact_work_ = 0.0, outer_work_ = 0.0;  // J
 };
 

@@ -28,6 +28,7 @@ void Parts::add(const Body& body, int index) {
     arm = std::max(arm, p.centre.norm());
   }
   arm_.push_back(arm);
+  here_.push_back(true);
   first_ball_.push_back(ball_count());
   first_polytope_.push_back(polytope_count());
   update(index, body, body.velocity, body.angular_velocity);

@@ -43,6 +43,9 @@ class Parts {
   /// Balls of a body: [first_ball(body), first_ball(body + 1)).
   int first_ball(int body) const { return first_ball_[static_cast<std::size_t>(body)]; }
   int first_polytope(int body) const { return first_polytope_[static_cast<std::size_t>(body)]; }
+  /// Whether a body is there: one that has not come yet or has gone meets nobody.
+  bool here(int body) const { return here_[static_cast<std::size_t>(body)]; }
+  void set_here(int body, bool here) { here_[static_cast<std::size_t>(body)] = here; }
   /// One ball in the centre of mass and nothing else.
   bool is_sphere(int body) const {
     return first_ball(body + 1) - first_ball(body) == 1 && first_polytope(body + 1) == first_polytope(body);
@@ -57,6 +60,7 @@ class Parts {
   std::vector<int> ball_body_;
   std::vector<PolytopePart> polytopes_;
   std::vector<double> arm_;
+  std::vector<char> here_;
   std::vector<int> first_ball_{0}, first_polytope_{0};
 };
 

@@ -15,7 +15,7 @@ namespace ejecta {
 namespace {
 
 constexpr std::size_t kHead = 6;      // numbers stored before the bodies
-constexpr std::size_t kPerBody = 22;  // numbers stored of each body
+constexpr std::size_t kPerBody = 23;  // numbers stored of each body
 
 void append(std::vector<double>& out, const Vec3& v) { out.insert(out.end(), v.data(), v.data() + 3); }
 
@@ -26,7 +26,8 @@ int Particles::add(Body body) {
     throw InputError(
         fmt::format("body \"{}\": mass {} kg and moments of inertia must be positive", body.name, body.mass));
   const int index = static_cast<int>(bodies_.size());
-  launches_.push_back({time_ < body.release_at, body.velocity, body.angular_velocity});
+  presence_.push_back(body.enters_at ? Presence::waiting : Presence::here);
+  launches_.push_back({body.enters_at || time_ < body.release_at, body.velocity, body.angular_velocity});
   if (launches_.back().waiting || body.motion == Motion::fixed) {
     body.velocity.setZero();
     body.angular_velocity.setZero();
@@ -36,6 +37,7 @@ int Particles::add(Body body) {
   for (auto* v : {&force_, &torque_, &velocity_, &spin_, &listed_at_}) v->push_back(Vec3(0, 0, 0));
   turned_.push_back(0.0);
   parts_.add(body, index);
+  parts_.set_here(index, presence_.back() == Presence::here);
   const double radius = body.shape.bounding_radius();
   smallest_ = bodies_.empty() ? radius : std::min(smallest_, radius);
   bodies_.push_back(std::move(body));
@@ -65,11 +67,13 @@ void Particles::remove(int index) {
     v->erase(v->begin() + index);
   turned_.erase(turned_.begin() + index);
   peaks_.erase(peaks_.begin() + index);
+  presence_.erase(presence_.begin() + index);
   launches_.erase(launches_.begin() + index);
   parts_.clear();
   smallest_ = std::numeric_limits<double>::infinity();
   for (std::size_t n = 0; n < bodies_.size(); ++n) {
     parts_.add(bodies_[n], static_cast<int>(n));
+    parts_.set_here(static_cast<int>(n), presence_[n] == Presence::here);
     smallest_ = std::min(smallest_, bodies_[n].shape.bounding_radius());
   }
   balls_.rename(ball_names, parts_.ball_count());
@@ -96,7 +100,7 @@ void Particles::place(int index, const Vec3& position, const Quat& orientation, 
 }
 
 void Particles::require_apart() {
-  search_.find(parts_, bodies_, walls_, 0.0);
+  search_.find(parts_, bodies_, walls_, domain_, 0.0);
   double worst = 0.0;
   std::string message;
   const auto report = [&](double overlap, double size, int a, const std::string& other, const Vec3& normal) {
@@ -112,7 +116,7 @@ void Particles::require_apart() {
   };
   for (const auto& [i, j] : search_.balls()) {
     const BallRow &a = parts_.row(i), &b = parts_.row(j);
-    const Vec3 apart = a.centre() - b.centre();
+    const Vec3 apart = domain_.nearest(a.centre() - b.centre());
     report(a.radius + b.radius - apart.norm(), std::min(a.radius, b.radius), parts_.body_of_ball(i),
            name(parts_.body_of_ball(j)), apart.normalized());
   }
@@ -136,7 +140,9 @@ void Particles::require_apart() {
 
 DemEnergy Particles::energy() const {
   DemEnergy e;
-  for (const Body& b : bodies_) {
+  for (std::size_t n = 0; n < bodies_.size(); ++n) {
+    const Body& b = bodies_[n];
+    if (presence_[n] != Presence::here) continue;
     e.kinetic += b.kinetic_energy();
     if (b.motion == Motion::free) e.potential -= b.mass * gravity_.dot(b.position);
   }
@@ -154,7 +160,7 @@ std::vector<ContactRecord> Particles::contacts() const {
     const auto [a, b] = balls_.pair(n);
     const BallRow& ball = parts_.row(a);
     const Vec3 normal = b < 0 ? walls_[static_cast<std::size_t>(-1 - b)].normal
-                              : Vec3((ball.centre() - parts_.row(b).centre()).normalized());
+                              : domain_.nearest(ball.centre() - parts_.row(b).centre()).normalized();
     records.push_back({parts_.body_of_ball(a), b < 0 ? b : parts_.body_of_ball(b),
                        ball.centre() - (ball.radius - row.half_overlap) * normal, normal,
                        Vec3(row.fx, row.fy, row.fz), 2 * row.half_overlap});
@@ -181,7 +187,7 @@ std::vector<double> Particles::state() const {
     append(s, momentum_[n]);
     append(s, force_[n]);
     append(s, torque_[n]);
-    s.insert(s.end(), {peaks_[n].overlap, peaks_[n].force, peaks_[n].time});
+    s.insert(s.end(), {peaks_[n].overlap, peaks_[n].force, peaks_[n].time, double(presence_[n])});
   }
   balls_.save(s);
   solids_.save(s);
@@ -207,7 +213,9 @@ void Particles::restore(std::span<const double> s) {
     force_[n] = Vec3(at + 13);
     torque_[n] = Vec3(at + 16);
     peaks_[n] = {at[19], at[20], at[21]};
-    launches_[n].waiting = time_ < b.release_at;
+    presence_[n] = static_cast<Presence>(static_cast<int>(at[22]));
+    parts_.set_here(static_cast<int>(n), presence_[n] == Presence::here);
+    launches_[n].waiting = time_ < b.release_at || presence_[n] == Presence::waiting;
     b.angular_velocity = angular_velocity(b.orientation, momentum_[n], b.inertia);
     parts_.update(static_cast<int>(n), b, b.velocity, b.angular_velocity);
   }
@@ -222,7 +230,8 @@ Particles make_particles(const Case& config) {
     throw InputError(
         fmt::format("contact.time_step_fraction = {} must be in (0, 0.5]; 0.1 resolves a contact well",
                     contact.time_step_fraction));
-  Particles particles(config.environment.gravity, Materials(config), contact);
+  const Domain domain = make_domain(config.domain);
+  Particles particles(config.environment.gravity, Materials(config), contact, domain);
   for (const BodySpec& spec : config.bodies) {
     Body body = make_body(spec, particles.materials(), directory);
     const double limit = contact_time(body, particles.materials(), std::max(body.velocity.norm(), 1.0));
@@ -231,6 +240,13 @@ Particles make_particles(const Case& config) {
           "contact.time_step = {:.3g} s does not suit body \"{}\" of material \"{}\", whose contacts "
           "last {:.3g} s: at most half of that is stable, {:.3g} s resolves them",
           *contact.time_step, body.name, spec.material, limit, 0.1 * limit));
+    for (int c = 0; c < 3; ++c)
+      if (domain.period[c] > 0 && domain.period[c] < 4 * body.shape.bounding_radius())
+        throw InputError(
+            fmt::format("domain.{}: {:.4g} m between periodic sides is too near for body \"{}\", which would "
+                        "meet itself; "
+                        "at least {:.4g} m",
+                        "xyz"[c], domain.period[c], body.name, 4 * body.shape.bounding_radius()));
     particles.add(std::move(body));
   }
   for (const WallSpec& spec : config.walls) particles.add(make_wall(spec, particles.materials(), directory));

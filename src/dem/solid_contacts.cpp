@@ -79,7 +79,7 @@ void SolidContacts::compute(const Parts& parts, std::span<const Body> bodies, st
     const Side a = pair.a.kind == PartKind::ball ? side_of_ball(pair.a.index, pair.touch.point)
                                                  : side_of(pair.body_a, pair.touch.point);
     if (pair.body_b >= 0) {
-      apply_law(pair, a, side_of(pair.body_b, pair.touch.point), materials, dt);
+      apply_law(pair, a, side_of(pair.body_b, pair.touch.point - pair.shift), materials, dt);
     } else {
       const Wall& wall = walls[static_cast<std::size_t>(pair.b.index)];
       apply_law(pair, a, Side{wall.material, 0.0, wall.velocity, Vec3(0, 0, 0)}, materials, dt);

@@ -42,6 +42,7 @@ struct ContactHistory {
 struct SolidPair {
   PartKey a, b;
   int body_a = 0, body_b = -1;  ///< -1: a wall
+  Vec3 shift{0, 0, 0};          ///< m, from b to the image of it that a meets across a periodic side
   ContactHistory history;
   Touch touch;
   Vec3 force{0, 0, 0};      ///< N, on a
@@ -59,14 +60,15 @@ class SolidContacts {
   void compute(const Parts& parts, std::span<const Body> bodies, std::span<const Wall> walls,
                const Materials& materials, std::span<const Vec3> velocity, std::span<const Vec3> spin,
                double dt);
-  /// add(body, force, moment, touch): each contact's force and moment at its point on each of its bodies, in
-  /// order.
+  /// add(body, force, moment, point, touch): each contact's force and moment on each of its bodies, at the
+  /// point where that body is, in order.
   template <class Add>
   void gather(const Add& add) const {
     for (const SolidPair& p : pairs_) {
       if (!(p.touch.overlap > 0)) continue;
-      add(p.body_a, p.force, p.moment, p.touch);
-      if (p.body_b >= 0) add(p.body_b, Vec3(-p.force), Vec3(-p.moment), p.touch);
+      add(p.body_a, p.force, p.moment, p.touch.point, p.touch);
+      if (p.body_b >= 0)
+        add(p.body_b, Vec3(-p.force), Vec3(-p.moment), Vec3(p.touch.point - p.shift), p.touch);
     }
   }
 

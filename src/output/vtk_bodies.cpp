@@ -31,7 +31,7 @@ void BodiesWriter::write(const std::filesystem::path& path, double time, std::sp
                          offsets_.size()));
   float* point = file_.float_array("points", 3, 3 * vertices_);
   for (std::size_t b = 0; b < surfaces_.size(); ++b) {
-    const Mat3 rotation = poses[b].orientation.toRotationMatrix();
+    const Mat3 rotation = poses[b].there ? poses[b].orientation.toRotationMatrix() : Mat3(Mat3::Zero());
     for (const auto& v : surfaces_[b].vertices) {
       const Vec3 world = poses[b].position + rotation * Vec3(v[0], v[1], v[2]);
       for (int d = 0; d < 3; ++d) *point++ = static_cast<float>(world[d]);

@@ -35,8 +35,12 @@ Shape make_box(const Vec3& size) {
 Shape make_multisphere(const std::vector<Ball>& balls) {
   if (balls.empty()) throw InputError("a multisphere needs at least one sphere (x, y, z, radius)");
   for (const Ball& b : balls) require_positive(b.radius, "radius of each sphere of a multisphere");
+  return make_multisphere(balls, mass_balls(balls));
+}
+
+Shape make_multisphere(const std::vector<Ball>& balls, const MassProperties& mass) {
   auto data = std::make_shared<ShapeData>();
-  data->mass = mass_balls(balls);
+  data->mass = mass;
   data->frame = to_principal_axes(data->mass);
   BallsGeometry geometry;
   data->smallest_feature = 2.0 * balls.front().radius;

@@ -53,6 +53,22 @@ Polytope convex_piece(const TriangleMesh& mesh, const std::vector<int>& piece, c
   return hull;
 }
 
+/// Parts that share space would be counted twice. (That no corner of one lies inside another is not all that
+/// could be asked, but what happens.)
+void require_disjoint(const std::vector<Polytope>& parts, const std::string& name) {
+  for (std::size_t a = 0; a < parts.size(); ++a)
+    for (std::size_t b = 0; b < parts.size(); ++b)
+      for (const Vec3& v : parts[b].vertices) {
+        if (a == b) continue;
+        const double depth = -nearest_on_polytope(parts[a], v).distance;
+        if (depth > 1e-3 * std::min(parts[a].radius, parts[b].radius))
+          throw InputError(fmt::format(
+              "{}: convex pieces overlap: a corner of piece {} at ({:.6g}, {:.6g}, {:.6g}) m lies {:.3g} m "
+              "inside piece {}; pieces may touch but not share space",
+              name, b + 1, v.x(), v.y(), v.z(), depth, a + 1));
+      }
+}
+
 }  // namespace
 
 Shape make_polytope_shape(std::vector<Polytope> parts, TriangleMesh surface, const MassProperties& mass) {
@@ -87,6 +103,7 @@ Shape make_mesh(const TriangleMesh& mesh, const std::string& name) {
     parts.push_back(convex_piece(mesh, piece, name));
     hulls += mass_mesh(triangles_of(parts.back())).volume;
   }
+  require_disjoint(parts, name);
   const MassProperties mass = mass_mesh(mesh);
   const double volume = mass.volume;
   if (std::abs(hulls - volume) > 1e-4 * volume)

@@ -62,6 +62,8 @@ Shape make_sphere(double diameter);
 Shape make_box(const Vec3& size);
 /// The union of the balls.
 Shape make_multisphere(const std::vector<Ball>& balls);
+/// Balls that stand for a solid with these mass properties (unit density, in the axes of the balls).
+Shape make_multisphere(const std::vector<Ball>& balls, const MassProperties& mass);
 /// The paper's clusters: count[0] x count[1] x count[2] spheres on a regular lattice whose outermost spheres
 /// touch the faces of the box `size` (27 = 3x3x3, 9 = 3x3x1).
 Shape make_cluster(const Vec3& size, const std::array<int, 3>& count, double sphere_diameter);

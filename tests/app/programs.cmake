@@ -14,3 +14,7 @@ else()
   add_test(NAME app.paraview_live COMMAND sh -c "echo skipped: app.paraview_live needs ParaView; exit 77")
 endif()
 set_tests_properties(app.paraview_live PROPERTIES SKIP_RETURN_CODE 77 LABELS fast TIMEOUT 300)
+# Bodies without a fluid: shipped cases with what they expect.
+add_test(NAME app.bodies COMMAND ejecta validate cases/bodies validation/dem/chung-ooi-5.toml validation/dem/chung-ooi-6.toml
+         validation/dem/chung-ooi-8.toml verification/dem/flip-period.toml WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
+set_tests_properties(app.bodies PROPERTIES LABELS fast TIMEOUT 600)

@@ -76,15 +76,16 @@ void add_jet(CLI::App& app, Action& action) {
 }
 
 void add_bench(CLI::App& app, Action& action) {
-  CLI::App* command = app.add_subcommand(
-      "bench", "Cell-steps per second on the standard case, per operator, against the machine's limit");
+  CLI::App* command =
+      app.add_subcommand("bench", "Cell-steps and particle-steps per second on standard cases, per operator");
   auto o = std::make_shared<BenchOptions>();
   add_threads(*command, o->threads);
   command->add_option("--steps", o->steps, "Timed steps")
       ->type_name("N")
       ->check(CLI::Range(1, 100000).description(""))
       ->capture_default_str();
-  command->footer("Example:\n  ejecta bench --threads 2");
+  command->add_option("--only", o->only, "Measure nothing else")->check(CLI::IsMember({"dem", "settled"}));
+  command->footer("Example:\n  ejecta bench --threads 2\n  ejecta bench --threads 1 --only dem");
   command->callback([o, &action] { action = [o] { return bench(*o); }; });
 }
 

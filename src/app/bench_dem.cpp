@@ -1,0 +1,131 @@
+#include "app/bench_dem.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "base/parallel.hpp"
+#include "base/stopwatch.hpp"
+#include "dem/particles.hpp"
+
+namespace ejecta {
+namespace {
+
+constexpr double kRadius = 5e-3, kStep = 5e-5;  // m, s: the paper's softened quartz
+
+/// Fraction of n times an irrational number: scatter that any program can repeat.
+double scatter(int n, double irrational) { return n * irrational - std::floor(n * irrational); }
+
+Particles empty_scene(const std::vector<std::pair<Vec3, Vec3>>& planes, const Vec3& floor_velocity) {
+  Case c;
+  MaterialSpec stone;
+  stone.name = "stone";
+  c.materials = {stone};
+  c.contact.time_step = kStep;
+  Particles p(c.environment.gravity, Materials(c), c.contact);
+  for (const auto& [normal, point] : planes) {
+    WallSpec wall;
+    wall.name = "wall";
+    wall.normal = normal;
+    wall.point = point;
+    if (normal.z() > 0) wall.velocity = floor_velocity;
+    p.add(make_wall(wall, p.materials(), ""));
+  }
+  return p;
+}
+
+/// `count` bodies on a lattice of `side` x `side` columns in an open box, a little off their places.
+template <class Make>
+Particles box_of(int count, int side, double pitch, const Vec3& floor_velocity, const Make& make) {
+  const double width = side * pitch;
+  Particles p = empty_scene({{Vec3(0, 0, 1), Vec3(0, 0, 0)},
+                             {Vec3(1, 0, 0), Vec3(0, 0, 0)},
+                             {Vec3(-1, 0, 0), Vec3(width, 0, 0)},
+                             {Vec3(0, 1, 0), Vec3(0, 0, 0)},
+                             {Vec3(0, -1, 0), Vec3(0, width, 0)}},
+                            floor_velocity);
+  for (int n = 0; n < count; ++n) {
+    BodySpec body = make(n);
+    const Vec3 off(scatter(n, 0.6180339887), scatter(n, 0.7548776662), scatter(n, 0.5698402910));
+    body.position = pitch * Vec3(n % side + 0.5, n / side % side + 0.5, n / (side * side) + 0.5) +
+                    0.04 * kRadius * (off - Vec3::Constant(0.5));
+    p.add(make_body(body, p.materials(), ""));
+  }
+  return p;
+}
+
+Particles spheres(int count, double pitch) {
+  const int side = std::max(4, static_cast<int>(std::lround(std::cbrt(count))));
+  return box_of(count, side, pitch * kRadius, Vec3(0, 0, 0), [](int) {
+    BodySpec body;
+    body.diameter = 2 * kRadius;
+    return body;
+  });
+}
+
+/// Boxes, icosahedra and tetrahedra of equal reach, four layers that fall onto a belt at 3 m/s.
+Particles belt(int count) {
+  const int side = std::max(4, static_cast<int>(std::lround(std::sqrt(count / 4.0))));
+  return box_of(count, side, 2.1 * kRadius, Vec3(3, 0, 0), [](int n) {
+    BodySpec body;
+    body.shape = ShapeKind::polyhedron;
+    if (n % 3 == 0) {
+      body.shape = ShapeKind::box;
+      body.size = Vec3::Constant(2 * kRadius / std::sqrt(3.0));
+    } else if (n % 3 == 1) {
+      for (const Vec3& v : icosphere(0).vertices) body.vertices.push_back(kRadius * v);
+    } else {
+      for (const Vec3& v : {Vec3(1, 1, 1), Vec3(1, -1, -1), Vec3(-1, 1, -1), Vec3(-1, -1, 1)})
+        body.vertices.push_back(kRadius / std::sqrt(3.0) * v);
+    }
+    return body;
+  });
+}
+
+/// Lets the bodies move, then prints one line.
+void measure(const char* name, Particles p, int settle, int steps) {
+  p.advance(settle * kStep);
+  const double count = static_cast<double>(p.bodies().size());
+  constexpr int kParts = 10;
+  std::vector<double> seconds;
+  const DemTimes before = p.times();
+  const std::int64_t lists = p.lists();
+  double contacts = 0.0;
+  for (int n = 0; n < kParts; ++n) {
+    const double start = wall_seconds();
+    p.advance(steps / kParts * kStep);
+    seconds.push_back((wall_seconds() - start) / (steps / kParts));
+    contacts += static_cast<double>(p.contacts().size()) / kParts;
+  }
+  std::sort(seconds.begin(), seconds.end());
+  const double step = seconds[kParts / 2];
+  const DemTimes t = p.times();
+  const double parts[] = {t.listing - before.listing, t.balls - before.balls, t.solids - before.solids,
+                          t.motion - before.motion};
+  const double all = parts[0] + parts[1] + parts[2] + parts[3];
+  fmt::print("{:<34}{:>9.3f}{:>10.2f}{:>10.0f}{:>9.0f}{:>8.0f}{:>8.0f}{:>8.0f}{:>8.0f}{:>8.1f}\n", name,
+             step * 1e3, count / step * 1e-6 / thread_count(), contacts,
+             step * thread_count() / std::max(contacts, 1.0) * 1e9, 100 * parts[1] / all,
+             100 * parts[2] / all, 100 * parts[3] / all, 100 * parts[0] / all,
+             double(steps) / std::max<double>(1.0, static_cast<double>(p.lists() - lists)));
+}
+
+}  // namespace
+
+void bench_dem(bool only_settled) {
+  fmt::print("\nbodies that touch ({} threads; median of ten parts)\n", thread_count());
+  fmt::print("{:<34}{:>9}{:>10}{:>10}{:>9}{:>8}{:>8}{:>8}{:>8}{:>8}\n", "", "ms/step", "M p-s/s/c",
+             "contacts", "ns/cont.", "balls %", "solids", "motion", "lists", "steps/l.");
+  measure("10,000 spheres settled", spheres(10000, 2.1), 4000, 2000);
+  if (only_settled) return;
+  measure("10,000 spheres settling", spheres(10000, 2.1), 0, 4000);
+  measure("2,000 polyhedra on a belt", belt(2000), 800, 400);
+  for (const int count : {1000, 10000, 100000})
+    measure(fmt::format("{} spheres in contact", count).c_str(), spheres(count, 2.0), 200, 200);
+  fmt::print(
+      "M p-s/s/c: million particle-steps a second and core; steps/l.: steps between lists of neighbours\n");
+}
+
+}  // namespace ejecta

@@ -1,0 +1,58 @@
+#include "case/copies.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+#include <random>
+
+namespace ejecta {
+namespace {
+
+/// Uniform numbers in [0, 1) that are the same with every standard library.
+class Random {
+ public:
+  explicit Random(std::uint64_t seed) : bits_(seed) {}
+  double operator()() { return std::ldexp(static_cast<double>(bits_() >> 11), -53); }
+
+ private:
+  std::mt19937_64 bits_;
+};
+
+/// A rotation drawn uniformly (Shoemake 1992, Graphics Gems III).
+Quat any_rotation(Random& random) {
+  const double u = random(), a = 2 * std::numbers::pi * random(), b = 2 * std::numbers::pi * random();
+  return Quat(std::sqrt(u) * std::cos(b), std::sqrt(1 - u) * std::sin(a), std::sqrt(1 - u) * std::cos(a),
+              std::sqrt(u) * std::sin(b));
+}
+
+}  // namespace
+
+Case with_copies(const Case& c) {
+  Case out = c;
+  out.bodies.clear();
+  std::uint64_t seed = 0;
+  for (const BodySpec& spec : c.bodies) {
+    Random random(++seed);
+    for (int n = 0; n < spec.copies; ++n) {
+      BodySpec b = spec;
+      if (spec.copies > 1) {
+        b.name = fmt::format("{}-{}", spec.name, n + 1);
+        b.enters_at = spec.enters_at.value_or(0.0) + n * spec.every;
+      }
+      for (int a = 0; a < 3; ++a) b.position[a] += spec.spread[a] * (random() - 0.5);
+      if (spec.random_rotation) {
+        const Eigen::AngleAxisd turn(any_rotation(random));
+        b.rotation_axis = turn.axis();
+        b.rotation_angle = turn.angle();
+      }
+      b.copies = 1;
+      b.spread.setZero();
+      b.random_rotation = false;
+      out.bodies.push_back(std::move(b));
+    }
+  }
+  return out;
+}
+
+}  // namespace ejecta
