@@ -1,6 +1,7 @@
 """Opens the fields of a run in ParaView while it is going: the moments written so far, each of them whole, and after
 "Reload Files" the later ones. Usage: pvpython live_test.py EJECTA CASE RUN_DIR"""
 
+import shutil
 import subprocess
 import sys
 import time
@@ -9,6 +10,7 @@ from pathlib import Path
 from paraview import simple
 
 ejecta, case, out = sys.argv[1:]
+shutil.rmtree(out, ignore_errors=True)  # not the fields of an earlier run
 run = subprocess.Popen([ejecta, "run", case, "--quiet", "--force", "--threads", "1", "--out", out,
                         "--set", "run.end_time=10 s", "--set", "output.fields_interval=0.4 ms"])
 pvd = Path(out) / "fields" / "air.pvd"
