@@ -18,7 +18,7 @@ using LooseLanes = double __attribute__((vector_size(kLanes * sizeof(double)), a
 using Index = std::int64_t __attribute__((vector_size(kLanes * sizeof(std::int64_t))));
 
 /// Eight rows of eight numbers to eight columns.
-EJECTA_INLINE void transpose(Lanes r[8]) {
+EJECTA_INLINE void transpose_lanes(Lanes r[8]) {
   constexpr Index low1{0, 8, 2, 10, 4, 12, 6, 14}, high1{1, 9, 3, 11, 5, 13, 7, 15};
   constexpr Index low2{0, 1, 8, 9, 4, 5, 12, 13}, high2{2, 3, 10, 11, 6, 7, 14, 15};
   constexpr Index low4{0, 1, 2, 3, 8, 9, 10, 11}, high4{4, 5, 6, 7, 12, 13, 14, 15};
@@ -201,7 +201,7 @@ void BallContacts::compute_groups(const Parts& parts, const Materials& materials
       out[5] = touching ? turning.y : zero;
       out[6] = touching ? turning.z : zero;
       out[7] = touching ? f.elastic_normal + f.elastic_tangential : zero;
-      transpose(out);
+      transpose_lanes(out);
     }
     for (int k = 0; k < kLanes; ++k) *reinterpret_cast<LooseLanes*>(&rows_[n + at(k)].fx) = out[k];
   };
