@@ -172,18 +172,19 @@ class Manufactured {
 constexpr std::array<const char*, 6> kNames{"density",  "velocity x", "velocity z",
                                             "pressure", "k",          "epsilon"};
 
-/// Orders between 32 and 64 cells. Where nothing diffuses, in density, the limiter flattens extrema: 1.73;
-/// from 48 to 96 cells all are above 1.8.
+/// Orders between 48 and 96 cells, in double. On coarser grids the limiter flattens the extrema of density,
+/// where nothing diffuses (1.67 from 32 to 64).
 void expect_second_order(bool turbulent, std::size_t quantities) {
+  if (sizeof(Real) == sizeof(float)) GTEST_SKIP() << "round-off of float hides the order";
   std::array<Six, 2> error;
   for (int n = 0; n < 2; ++n) {
-    Manufactured m(32 << n, turbulent);
+    Manufactured m(48 << n, turbulent);
     m.run(1.5, 2.5);
     error[static_cast<std::size_t>(n)] = m.errors();
   }
   for (std::size_t c = 0; c < quantities; ++c) {
     const double order = std::log2(error[0][c] / error[1][c]);
-    EXPECT_GT(order, 1.7) << kNames[c] << " " << error[0][c] << " " << error[1][c];
+    EXPECT_GT(order, 1.8) << kNames[c] << " " << error[0][c] << " " << error[1][c];
     EXPECT_LT(order, 3.0) << kNames[c] << " " << error[0][c] << " " << error[1][c];
   }
 }
