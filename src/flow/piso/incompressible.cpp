@@ -8,6 +8,7 @@
 
 #include "base/error.hpp"
 #include "base/stopwatch.hpp"
+#include "flow/piso/forcing.hpp"
 #include "flow/piso/momentum.hpp"
 #include "flow/piso/projection.hpp"
 #include "flow/stencil.hpp"
@@ -39,19 +40,6 @@ void check_periodic(const Grid& grid, const std::array<Boundary, 6>& faces) {
           fmt::format("a periodic direction needs equal first and last cells, in {} they are {} and {} m",
                       "xyz"[d], a.width.front(), a.width.back()));
   }
-}
-
-/// u at the image point of a solid cell, trilinear.
-Real image_velocity(const SolidCell& c, ConstFieldView u) {
-  const Real* p = &u(c.image_i, c.image_j, c.image_k);
-  const auto [x, y, z] = c.fraction;
-  const auto along_x = [&](const Real* q) { return q[0] + x * (q[1] - q[0]); };
-  const auto along_y = [&](const Real* q) {
-    const Real low = along_x(q);
-    return low + y * (along_x(q + u.sy) - low);
-  };
-  const Real low = along_y(p);
-  return low + z * (along_y(p + u.sz) - low);
 }
 
 }  // namespace
@@ -114,70 +102,6 @@ void Incompressible::initialise(const std::function<Vec3(const Vec3&)>& velocity
   if (turbulence_) turbulence_->advance(boundaries_, this->velocity(), views(q_), none, Real(0));
 }
 
-namespace {
-
-/// Inverse time scales of one cell: convection sum |u| / h and viscosity 2 nu sum 1 / h2, 1/s.
-struct Rates {
-  std::array<ConstFieldView, 3> u;
-  ConstFieldView nut;
-  Metrics x, y, z;
-  Real on_x, on_y, on_z, nu;
-
-  EJECTA_KERNEL Real convection(int i, int j, int k) const {
-    return on_x * std::abs(u[0](i, j, k)) * x.inv_width[i] + on_y * std::abs(u[1](i, j, k)) * y.inv_width[j] +
-           on_z * std::abs(u[2](i, j, k)) * z.inv_width[k];
-  }
-  EJECTA_KERNEL Real viscosity(int i, int j, int k, Real eddy) const {
-    const Real hx = x.inv_width[i], hy = y.inv_width[j], hz = z.inv_width[k];
-    return Real(2) * (nu + eddy) * (on_x * hx * hx + on_y * hy * hy + on_z * hz * hz);
-  }
-};
-
-}  // namespace
-
-double Incompressible::stable_dt(double courant) {
-  const Rates r = {std::as_const(*this).views(u_),
-                   turbulence_ ? turbulence_->eddy_viscosity() : ConstFieldView{},
-                   grid_.metrics(0),
-                   grid_.metrics(1),
-                   grid_.metrics(2),
-                   Real(grid_.active(0)),
-                   Real(grid_.active(1)),
-                   Real(grid_.active(2)),
-                   static_cast<Real>(setup_.viscosity)};
-  // Heun's method is stable to -2 on the negative real axis, where upwinding reaches -2 sum |u| dt/h and
-  // viscosity -4 nu sum dt/h2; k and epsilon, explicit Euler, stay positive under the same sum.
-  const Real by_courant = static_cast<Real>(1.0 / courant);
-  if (!turbulence_)
-    return 1.0 / std::max(1e-30, double(reduce_max(grid_.range(), [=](int i, int j, int k) {
-                            return by_courant * r.convection(i, j, k) + r.viscosity(i, j, k, Real(0));
-                          })));
-  // With eddies: beyond the explicit limit increments are smoothed, up to the convective limit.
-  const auto [both, eddy, convection] = reduce_max<3>(grid_.range(), [=](int i, int j, int k, Real* rate) {
-    rate[1] = r.nut(i, j, k);
-    rate[2] = r.convection(i, j, k);
-    rate[0] = by_courant * rate[2] + r.viscosity(i, j, k, rate[1]);
-  });
-  explicit_dt_ = 1.0 / std::max(1e-30, double(both));
-  largest_viscosity_ = setup_.viscosity + double(eddy);
-  convection_ = double(convection);
-  return courant / std::max(1e-30, convection_);
-}
-
-double Incompressible::courant(double dt) const {
-  if (convection_ >= 0.0) return dt * convection_;
-  const Rates r = {views(u_),
-                   {},
-                   grid_.metrics(0),
-                   grid_.metrics(1),
-                   grid_.metrics(2),
-                   Real(grid_.active(0)),
-                   Real(grid_.active(1)),
-                   Real(grid_.active(2)),
-                   0};
-  return dt * double(reduce_max(grid_.range(), [=](int i, int j, int k) { return r.convection(i, j, k); }));
-}
-
 void Incompressible::evaluate_source(double time) {
   for_each_index(grid_.nz(), [&](int k) {
     for (int j = 0; j < grid_.ny(); ++j)
@@ -217,26 +141,7 @@ BoundaryFlow Incompressible::predict(double a, double b, double time, Real dt) {
 
 void Incompressible::force(SolidMask& solids, double weight) {
   ScopedTimer timer(times_.forcing);
-  const int count = static_cast<int>(solids.cells.size());
-  const std::array<FieldView, 3> u = views(u_star_);
-  for_each_index(count, [&](int n) {
-    const SolidCell& c = solids.cells[static_cast<std::size_t>(n)];
-    for (int d = 0; d < 3; ++d) {
-      Real target = c.solid[d];
-      if (c.ratio != Real(0)) target += c.ratio * (image_velocity(c, u[d]) - c.solid[d]);
-      solids.target[static_cast<std::size_t>(n)][d] = target;
-    }
-  });
-  for_each_index(count, [&](int n) {
-    const SolidCell& c = solids.cells[static_cast<std::size_t>(n)];
-    const double volume = grid_.volume(c.i, c.j, c.k);
-    for (int d = 0; d < 3; ++d) {
-      Real& value = u[d](c.i, c.j, c.k);
-      const Real change = c.weight * (solids.target[static_cast<std::size_t>(n)][d] - value);
-      value += change;
-      solids.impulse[static_cast<std::size_t>(n)][d] += weight * volume * double(change);
-    }
-  });
+  force_solids(grid_, solids, weight, views(u_star_));
 }
 
 void Incompressible::correct(const SolidMask& solids, Real dt) {
@@ -247,28 +152,7 @@ void Incompressible::correct(const SolidMask& solids, Real dt) {
       periodic = periodic || (grid_.active(f / 2) && boundaries_.kind(f) == BoundaryKind::periodic);
     if (periodic) boundaries_.fill_velocity(views(u_star_), views(q_));
     face_velocities(grid_, std::as_const(*this).views(u_star_), p_.view(), dt, views(q_));
-    // Next to solids the plain mean: the pressure inside a solid must not move the faces of the fluid.
-    for_each_index(static_cast<int>(solids.cells.size()), [&](int n) {
-      const SolidCell& c = solids.cells[static_cast<std::size_t>(n)];
-      const int at[3] = {c.i, c.j, c.k};
-      for (int d = 0; d < 3; ++d) {
-        if (!grid_.active(d)) continue;
-        const Metrics m = grid_.metrics(d);
-        const ConstFieldView u = u_star_[d].view();
-        const std::ptrdiff_t s = stride(u, d);
-        for (int side = 0; side < 2; ++side) {
-          const int face = at[d] + side;
-          if (face == 0 || face == grid_.n(d)) continue;
-          const Real* high = &u(c.i, c.j, c.k) + (side ? s : 0);
-          Real* q = &q_[d](c.i, c.j, c.k) + (side ? s : 0);
-          // Inside the solid the rigid velocity itself, which is free of divergence (and does not vary along
-          // d).
-          const Real inside = c.weight * (&solid_(c.i, c.j, c.k))[side ? s : -s];
-          const Real mean = m.weight[face] * high[-s] + (Real(1) - m.weight[face]) * high[0];
-          *q = mean + inside * (c.solid[d] - mean);
-        }
-      }
-    });
+    face_velocities_at_solids(grid_, solids, solid_.view(), std::as_const(*this).views(u_star_), views(q_));
     boundaries_.fill_face_velocity(views(q_), views(u_star_), p_.view(), dt);
     divergence(grid_, std::as_const(*this).views(q_), dt, phi_.view());
   }
@@ -342,45 +226,6 @@ void Incompressible::book_boundaries(const BoundaryFlow& through, double dt) {
 void Incompressible::book_pressure(ConstFieldView p, double weight, double dt) {
   ScopedTimer timer(times_.ledger);
   ledger_.momentum_through_boundaries += weight * dt * setup_.density * boundary_pressure(grid_, p);
-}
-
-double Incompressible::largest_divergence() const { return ejecta::largest_divergence(grid_, views(q_)); }
-
-Vec3 Incompressible::momentum() const {
-  const Metrics m[3] = {grid_.metrics(0), grid_.metrics(1), grid_.metrics(2)};
-  Vec3 sum;
-  for (int c = 0; c < 3; ++c)
-    sum[c] = setup_.density * reduce_sum(grid_.range(), [=, u = u_[c].view()](int i, int j, int k) {
-               return double(u(i, j, k)) * double(m[0].volume[i]) * double(m[1].volume[j]) *
-                      double(m[2].volume[k]);
-             });
-  return sum;
-}
-
-double Incompressible::kinetic_energy() const {
-  const Metrics m[3] = {grid_.metrics(0), grid_.metrics(1), grid_.metrics(2)};
-  const std::array<ConstFieldView, 3> u = views(u_);
-  return 0.5 * setup_.density * reduce_sum(grid_.range(), [=](int i, int j, int k) {
-           const double x = u[0](i, j, k), y = u[1](i, j, k), z = u[2](i, j, k);
-           return (x * x + y * y + z * z) * double(m[0].volume[i]) * double(m[1].volume[j]) *
-                  double(m[2].volume[k]);
-         });
-}
-
-bool Incompressible::finite(Vec3* where) const {
-  const std::array<ConstFieldView, 3> u = views(u_);
-  const Real largest = reduce_max(grid_.range(), [=](int i, int j, int k) {
-    return std::abs(u[0](i, j, k)) + std::abs(u[1](i, j, k)) + std::abs(u[2](i, j, k));
-  });
-  if (std::isfinite(largest)) return true;
-  for (int k = 0; where && k < grid_.nz(); ++k)
-    for (int j = 0; j < grid_.ny(); ++j)
-      for (int i = 0; i < grid_.nx(); ++i)
-        if (!std::isfinite(u[0](i, j, k) + u[1](i, j, k) + u[2](i, j, k))) {
-          *where = grid_.centre(i, j, k);
-          return false;
-        }
-  return false;
 }
 
 std::vector<Field*> Incompressible::state() {
