@@ -4,9 +4,9 @@
 #include <xmmintrin.h>
 
 #include <array>
-#include <cstdlib>
 #include <memory>
-#include <new>
+
+#include "base/storage.hpp"
 
 namespace ejecta {
 namespace {
@@ -27,17 +27,16 @@ void set_thread_count(int threads) { omp_set_num_threads(threads); }
 
 Real* thread_scratch(std::size_t count, int slot) {
   struct Buffer {
-    std::unique_ptr<Real, void (*)(void*)> data{nullptr, std::free};
+    std::unique_ptr<void, FreeStorage> data;
     std::size_t count = 0;
   };
   thread_local std::array<Buffer, 4> buffers;
   Buffer& b = buffers.at(static_cast<std::size_t>(slot));
   if (b.count < count) {
-    b.data.reset(static_cast<Real*>(std::aligned_alloc(64, (count * sizeof(Real) + 63) / 64 * 64)));
-    if (!b.data) throw std::bad_alloc();
+    b.data = allocate_storage(count * sizeof(Real));
     b.count = count;
   }
-  return b.data.get();
+  return static_cast<Real*>(b.data.get());
 }
 
 namespace detail {

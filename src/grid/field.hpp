@@ -1,13 +1,12 @@
 #pragma once
 #include <algorithm>
 #include <cstddef>
-#include <cstdlib>
 #include <memory>
-#include <new>
 #include <type_traits>
 
 #include "base/parallel.hpp"
 #include "base/real.hpp"
+#include "base/storage.hpp"
 
 namespace ejecta {
 
@@ -37,9 +36,7 @@ class Array3 {
     sy_ = (pad_ + nx + kGhosts + 1 + lanes - 1) / lanes * lanes;
     sz_ = sy_ * (ny + 2 * kGhosts + 1);
     size_ = static_cast<std::size_t>(sz_) * static_cast<std::size_t>(nz + 2 * kGhosts + 1);
-    void* p = std::aligned_alloc(64, (size_ * sizeof(T) + 63) / 64 * 64);
-    if (!p) throw std::bad_alloc();
-    data_.reset(static_cast<T*>(p));
+    data_ = allocate_storage(size_ * sizeof(T));
     fill(T(0));
   }
   Array3(const Array3& o) : Array3(o.nx_, o.ny_, o.nz_) { std::copy_n(o.data(), size_, data()); }
@@ -61,19 +58,16 @@ class Array3 {
   const T& operator()(int i, int j, int k) const { return view()(i, j, k); }
   void fill(T value) { std::fill_n(data(), size_, value); }
   /// Raw storage, ghosts and padding included (checkpoints).
-  T* data() { return data_.get(); }
-  const T* data() const { return data_.get(); }
+  T* data() { return static_cast<T*>(data_.get()); }
+  const T* data() const { return static_cast<const T*>(data_.get()); }
   std::size_t size() const { return size_; }
 
  private:
-  struct Free {
-    void operator()(T* p) const { std::free(p); }
-  };
   std::ptrdiff_t offset() const { return pad_ + kGhosts * sy_ + kGhosts * sz_; }
   int nx_ = 0, ny_ = 0, nz_ = 0;
   std::ptrdiff_t pad_ = 0, sy_ = 0, sz_ = 0;
   std::size_t size_ = 0;
-  std::unique_ptr<T, Free> data_;
+  std::unique_ptr<void, FreeStorage> data_;
 };
 
 using Field = Array3<Real>;

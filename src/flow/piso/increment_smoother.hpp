@@ -41,7 +41,7 @@ class IncrementSmoother {
   };
   void smooth_x(FieldView delta, int k) const;
   void smooth_y(FieldView delta, int k) const;
-  void smooth_z_and_add(FieldView delta, int j, const Base& base) const;
+  void smooth_z_and_add(FieldView delta, int j0, int j1, const Base& base) const;
 
   int nx_, ny_, nz_;
   std::array<bool, 3> active_;

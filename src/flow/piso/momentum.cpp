@@ -74,11 +74,12 @@ BoundaryFlow predict(const Grid& grid, const MomentumTerms& t, std::vector<Bound
   const Metrics m[3] = {grid.metrics(0), grid.metrics(1), grid.metrics(2)};
   const auto component = [&](auto which, int j, int k, const Real* balance) {
     constexpr int C = decltype(which)::value;
-    const Real *old = t.old[C].row(j, k), *now = t.u[C].row(j, k), *p = t.pressure.row(j, k);
     const Real* source = t.source[C].origin ? t.source[C].row(j, k) : nullptr;
     Real* out = t.out[C].row(j, k);
-    const Real dt = t.dt, wb = t.b, base_a = t.increment_only ? Real(0) : t.a,
-               base_b = t.increment_only ? Real(0) : t.b, acceleration = t.acceleration[C];
+    const Real step = t.b * t.dt, acceleration = t.acceleration[C];
+    const Real base_a = t.increment_only ? Real(0) : t.a, base_b = t.increment_only ? Real(0) : t.b;
+    const Real *now = t.u[C].row(j, k), *p = t.pressure.row(j, k);
+    const Real* old = base_a == Real(0) ? now : t.old[C].row(j, k);  // not needed: not fetched either
     const Real inv_jk = m[1].inv_volume[j] * m[2].inv_volume[k];
     const std::ptrdiff_t s = stride(t.pressure, C);
     const Metrics mc = m[C];
@@ -90,7 +91,7 @@ BoundaryFlow predict(const Grid& grid, const MomentumTerms& t, std::vector<Bound
         Real rate = acceleration - balance[i] * inv_volume[i] * inv_jk;
         if constexpr (with_pressure) rate -= cell_gradient(p + i, s, mc, at);
         if constexpr (with_source) rate += source[i];
-        out[i] = base_a * old[i] + base_b * now[i] + wb * dt * rate;
+        out[i] = base_a * old[i] + base_b * now[i] + step * rate;
       });
     };
     using Yes = std::true_type;
@@ -104,7 +105,7 @@ BoundaryFlow predict(const Grid& grid, const MomentumTerms& t, std::vector<Bound
       const Real* r = m[0].centre;
       const Real nu = t.viscosity;
       for_each_lane(0, grid.nx(), [=](int i) {
-        const Real rate = wb * dt * (kTurbulent ? Real(2) * (nu + eddy[i]) : nu) / (r[i] * r[i]);
+        const Real rate = step * (kTurbulent ? Real(2) * (nu + eddy[i]) : nu) / (r[i] * r[i]);
         const Real base = base_a * old[i] + base_b * now[i];
         out[i] = base + (out[i] - base - rate * now[i]) / (Real(1) + rate);
       });
