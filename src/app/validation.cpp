@@ -9,6 +9,7 @@
 #include "app/exit_code.hpp"
 #include "base/error.hpp"
 #include "base/text.hpp"
+#include "case/extent.hpp"
 #include "case/load.hpp"
 #include "output/output_file.hpp"
 #include "output/report.hpp"
@@ -82,15 +83,7 @@ Comparison compare_series(const ExpectSpec& e, const std::vector<nlohmann::json>
 
 Case refined(const Case& original, double factor) {
   Case c = original;
-  for (AxisSpec& axis : c.grid.axis) {
-    if (axis.cells.size() == 1 && axis.cells[0] == 1) continue;
-    for (int& n : axis.cells) {
-      const double cells = n * factor;
-      if (std::abs(cells - std::round(cells)) > 1e-9 || cells < 1.0)
-        throw InputError(fmt::format("{}: {} cells times {} is no whole number of cells", c.path, n, factor));
-      n = static_cast<int>(std::round(cells));
-    }
-  }
+  refine(c.grid, factor);
   if (c.convergence.scale_time_step && c.run.time_step) *c.run.time_step /= factor;
   return c;
 }

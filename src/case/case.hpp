@@ -86,6 +86,7 @@ struct AxisSpec {
 /// [grid]; in axisymmetric geometry x is the radius, z the axis, y has one cell
 struct GridSpec {
   Geometry geometry = Geometry::cartesian;
+  double refinement = 1.0;  ///< applied to `cells` when the case is loaded, then 1 again
   std::array<AxisSpec, 3> axis;
 };
 

@@ -23,6 +23,12 @@ double cell_width(double length, int cells, double grading, int index) {
   return length * (ratio - 1.0) / (std::pow(ratio, cells) - 1.0) * std::pow(ratio, index);
 }
 
+void refine(GridSpec& grid, double factor) {
+  for (AxisSpec& axis : grid.axis)
+    for (int& n : axis.cells)
+      if (axis.cells.size() > 1 || n > 1) n = std::max(1, static_cast<int>(std::lround(n * factor)));
+}
+
 double widest_cell(const AxisSpec& axis, double from, double to) {
   from = std::clamp(from, axis.points.front(), axis.points.back());
   to = std::clamp(to, axis.points.front(), axis.points.back());

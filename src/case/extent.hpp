@@ -20,6 +20,8 @@ struct Box {
 std::optional<Box> grid_box(const Case&);
 /// Widths of the cells of one block: a geometric series with last/first = grading.
 double cell_width(double length, int cells, double grading, int index);
+/// Cells of each block times `factor`, at least one; directions of a single cell stay as they are.
+void refine(GridSpec&, double factor);
 /// Largest width of the cells of an axis that touch [from, to], or the nearest cell's; m.
 double widest_cell(const AxisSpec& axis, double from, double to);
 

@@ -8,8 +8,10 @@
 #include <iterator>
 #include <memory>
 #include <set>
+#include <utility>
 
 #include "base/error.hpp"
+#include "case/extent.hpp"
 #include "case/findings.hpp"
 #include "case/node_path.hpp"
 #include "case/override.hpp"
@@ -70,6 +72,7 @@ std::set<std::string> sections_of(const std::vector<Problem>& problems) {
 
 /// What follows from other keys.
 void fill_in(Case& c) {
+  refine(c.grid, std::exchange(c.grid.refinement, 1.0));
   if (c.fluid.ideal_gas && c.fluid.density == 0.0)
     c.fluid.density = c.environment.pressure / (c.fluid.gas_constant * c.environment.temperature);
   if (c.materials.empty() && !(c.bodies.empty() && c.walls.empty())) {

@@ -61,7 +61,14 @@ std::vector<Key> keys(FlowSpec& s) {
 }
 
 std::vector<Key> keys(GridSpec& s) {
-  return {{"geometry", choice(s.geometry), none, anything, "Coordinates of the grid", ""}};
+  return {
+      {"geometry", choice(s.geometry), none, anything, "Coordinates of the grid", ""},
+      {.name = "refinement",
+       .slot = &s.refinement,
+       .bounds = {0.05, 20},
+       .help =
+           "Cells of each block times this number (directions of one cell stay): 2 for twice the resolution",
+       .example = "2"}};
 }
 
 std::vector<Key> keys(AxisSpec& s) {

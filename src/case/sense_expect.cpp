@@ -1,9 +1,26 @@
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "case/findings.hpp"
 
 /// What `ejecta validate` needs.
 namespace ejecta {
+namespace {
+
+void cells_stay_whole(const Case& c, Findings& found) {
+  for (const AxisSpec& axis : c.grid.axis)
+    for (int n : axis.cells)
+      for (double factor : c.convergence.factors) {
+        const bool refined = axis.cells.size() > 1 || n > 1;
+        if (!refined || std::abs(n * factor - std::round(n * factor)) < 1e-9) continue;
+        found.error("convergence.factors", fmt::format("{} cells times {:g} is no whole number", n, factor),
+                    "factors that keep cells whole, or an order says nothing", "factors = [1, 2, 4]");
+        return;
+      }
+}
+
+}  // namespace
 
 void sense_expectations(const Case& c, Findings& found) {
   for (std::size_t n = 0; n < c.expects.size(); ++n) {
@@ -36,6 +53,7 @@ void sense_expectations(const Case& c, Findings& found) {
       found.error("convergence.factors", "factors must ascend", "coarse grids first", "factors = [1, 2, 4]");
       break;
     }
+  cells_stay_whole(c, found);
   if (!c.exact.velocity && !c.exact.pressure && !c.exact.density) return;
   if (c.flow.solver == FlowSolver::none)
     found.error("exact", "an exact flow without a flow", "a flow solver");

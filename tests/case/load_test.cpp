@@ -106,6 +106,15 @@ TEST(LoadCase, OverridesReachListElementsByNumberAndName) {
   EXPECT_EQ(c.run.courant, 0.8);
 }
 
+TEST(LoadCase, RefinementMultipliesCellsAndIsWrittenAsTheGridThatIsUsed) {
+  const Case fine = parse_case(paper, "paper.toml", {"grid.refinement=2"});
+  EXPECT_EQ(fine.grid.axis[0].cells, (std::vector{80, 80, 80}));
+  EXPECT_EQ(fine.grid.axis[1].cells, std::vector{160});
+  EXPECT_EQ(parse_case(write_case(fine), "written.toml").grid.axis[0].cells, fine.grid.axis[0].cells);
+  const Case flat = parse_case(paper, "paper.toml", {"grid.refinement=2", "grid.y.cells=1"});
+  EXPECT_EQ(flat.grid.axis[1].cells, std::vector{1}) << "a direction of one cell is not resolved";
+}
+
 TEST(LoadCase, WhatIsWrittenIsReadBackToTheSameText) {
   const std::string once = write_case(parse_case(paper, "paper.toml"));
   const std::string twice = write_case(parse_case(once, "resolved.toml"));
