@@ -28,24 +28,14 @@ ValveSpec from_zero(ValveSpec v) {
   return v;
 }
 
-/// The case of the jet with the valve of the box.
-Case source_of(const Case& box) {
-  Case c = load_case((std::filesystem::path(folder(box)) / box.jet.source_case).string());
-  if (!box.valve.trace.empty())
-    throw InputError("jet.kind = \"computed\": give a valve.trace in the jet's case, not in the box");
-  c.valve = from_zero(box.valve);
-  c.run.end_time = Valve(c.valve).closed_from() + kAfterClosing;
-  return c;
-}
-
 class ComputedJet : public JetSource {
  public:
   ComputedJet(const Case& box, Case source)
       : nozzle_(box.jet.nozzle),
         starts_(box.valve.opens_at),
         source_(std::move(source)),
-        valve_(source_.valve),
-        profile_(stored_or_computed_jet(source_, box.grid.axis[2].points.front() - box.jet.nozzle.z(),
+        valve_(source_.valve, folder(source_)),
+        profile_(stored_or_computed_jet(source_, computed_jet_height(box),
                                         [](const std::string& line) { std::cerr << line << '\n'; })) {}
 
   JetState at(const Vec3& x, double, double, double time) const override {
@@ -77,8 +67,24 @@ class ComputedJet : public JetSource {
 
 }  // namespace
 
+Case computed_jet_case(const Case& box) {
+  Case c = load_case((std::filesystem::path(folder(box)) / box.jet.source_case).string());
+  if (!box.valve.trace.empty())
+    throw InputError("jet.kind = \"computed\": give a valve.trace in the jet's case, not in the box");
+  const ValveSpec own = c.valve;
+  c.valve = from_zero(box.valve);
+  if (own.shape == ValveShape::trace) {
+    c.valve.shape = own.shape;
+    c.valve.trace = own.trace;
+  }
+  c.run.end_time = Valve(c.valve, folder(c)).closed_from() + kAfterClosing;
+  return c;
+}
+
+double computed_jet_height(const Case& box) { return box.grid.axis[2].points.front() - box.jet.nozzle.z(); }
+
 std::unique_ptr<JetSource> make_computed_jet(const Case& box) {
-  return std::make_unique<ComputedJet>(box, source_of(box));
+  return std::make_unique<ComputedJet>(box, computed_jet_case(box));
 }
 
 }  // namespace ejecta

@@ -60,7 +60,7 @@ std::vector<MeasuredCurve> read_measurements(const Case& c) {
 
 }  // namespace
 
-JetRun::JetRun(const Case& c, const RunOptions& options)
+JetRun::JetRun(const Case& c, double kept_at, const RunOptions& options)
     : jet_(c),
       directory_(output::RunDirectory::create(options.out.empty() ? output::RunDirectory::default_path(c.path)
                                                                   : std::filesystem::path(options.out),
@@ -72,7 +72,7 @@ JetRun::JetRun(const Case& c, const RunOptions& options)
       lines_(output::provenance_lines(provenance_)),
       orifice_(directory_, lines_),
       momentum_(jet_),
-      profile_(jet_, kBoxHeight),
+      profile_(jet_, kept_at),
       measured_(read_measurements(c)),
       progress_(std::cerr, output::progress_options_of_terminal(options.quiet ? output::Verbosity::quiet
                                                                               : output::Verbosity::normal)),
@@ -102,7 +102,7 @@ void JetRun::advance_to_end() {
     progress_.update(state(dt));
   }
   progress_.finish(state(0.0), "done");
-  profile_.profile().write(jet_file(jet_.scenario(), kBoxHeight));
+  profile_.profile().write(jet_file(jet_.scenario(), profile_.profile().height()));
   const Case& c = jet_.scenario();
   if (c.jet.compare_incompressible && c.flow.solver == FlowSolver::compressible)
     incompressible_ =
@@ -197,7 +197,7 @@ void JetRun::write_result() {
   r["probes"] = nlohmann::ordered_json::array();
   for (const JetProbe& p : probes_) r["probes"].push_back(p.summary());
   if (!compared_.empty()) r["measured"] = compared_;
-  r["stored_profile"] = jet_file(c, kBoxHeight).string();
+  r["stored_profile"] = jet_file(c, profile_.profile().height()).string();
   directory_.write_result(r);
   if (c.output.report) output::write_report(directory_.path());
   if (!quiet_) fmt::print("{}\n", r.dump(2));

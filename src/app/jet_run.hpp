@@ -17,8 +17,8 @@ namespace ejecta {
 class JetRun {
  public:
   /// Throws InputError when the case computes no jet, a measurement cannot be read, or the run directory
-  /// exists.
-  JetRun(const Case& c, const RunOptions& options);
+  /// exists. The jet is kept as it crosses the plane `kept_at`, m above the orifice.
+  JetRun(const Case& c, double kept_at, const RunOptions& options);
   void advance_to_end();
   void write_result();
 

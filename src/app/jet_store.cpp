@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <fstream>
+#include <sstream>
+
 #include "app/cache.hpp"
 #include "app/jet_model.hpp"
 #include "app/jet_records.hpp"
@@ -13,13 +16,14 @@
 namespace ejecta {
 namespace {
 
-/// Raised whenever the numbers of a jet change for the same case.
-constexpr int kNumericsVersion = 2;
+/// Raised whenever the numbers of a jet change for the same case, as when a default changes.
+constexpr int kNumericsVersion = 3;
 constexpr double kProfileInterval = 50e-6;  ///< s: a twentieth of the paper's transducer's response
 
 Case without_outputs(Case c) {
   c.run.title.clear();
   c.path.clear();
+  c.valve.trace.clear();
   c.output = {};
   c.checkpoint = {};
   c.probes.clear();
@@ -33,6 +37,14 @@ Case without_outputs(Case c) {
   return c;
 }
 
+/// What the file of the valve's trace says; empty without one.
+std::string trace_of(const Case& c) {
+  if (c.valve.trace.empty()) return "";
+  std::ostringstream text;
+  text << std::ifstream(std::filesystem::path(c.path).parent_path() / c.valve.trace).rdbuf();
+  return text.str();
+}
+
 std::vector<double> radii_of(const JetModel& jet) {
   std::vector<double> radii = jet.grid().axis(0).centre;
   for (double& r : radii) r -= jet.grid().lower().x();
@@ -41,11 +53,19 @@ std::vector<double> radii_of(const JetModel& jet) {
 
 }  // namespace
 
+std::string jet_file_name(const Case& jet, double height) {
+  const std::string inputs = fmt::format("{}\ntrace {}\nheight {:.9g}\nprecision {}\nnumerics {}\n",
+                                         write_changes(without_outputs(jet)), trace_of(jet), height,
+                                         output::precision(), kNumericsVersion);
+  return fmt::format("jet-{}.profile", output::sha256_hex(inputs).substr(0, 24));
+}
+
 std::filesystem::path jet_file(const Case& jet, double height) {
-  const std::string inputs =
-      fmt::format("{}\nheight {:.9g}\nprecision {}\nnumerics {}\n", write_case(without_outputs(jet)), height,
-                  output::precision(), kNumericsVersion);
-  return cache_directory() / fmt::format("jet-{}.profile", output::sha256_hex(inputs).substr(0, 24));
+  return cache_directory() / jet_file_name(jet, height);
+}
+
+std::filesystem::path shipped_jet_file(const Case& jet, double height) {
+  return std::filesystem::path(jet.path).parent_path() / "jets" / jet_file_name(jet, height);
 }
 
 ProfileRecorder::ProfileRecorder(const JetModel& jet, double height) : profile_(height, radii_of(jet)) {
@@ -60,16 +80,27 @@ void ProfileRecorder::advance(const JetModel& jet) {
   profile_.add(profile_moment(jet, profile_.height(), profile_.radii()));
 }
 
+namespace {
+
+/// Nothing where there is no such file or it is damaged.
+std::optional<JetProfile> read_jet(const std::filesystem::path& file,
+                                   const std::function<void(const std::string&)>& note) {
+  if (!std::filesystem::exists(file)) return {};
+  try {
+    return JetProfile::read(file);
+  } catch (const Error& e) {
+    note(fmt::format("{}; it is not used", e.what()));
+    return {};
+  }
+}
+
+}  // namespace
+
 JetProfile stored_or_computed_jet(const Case& c, double height,
                                   const std::function<void(const std::string&)>& note) {
+  if (auto profile = read_jet(shipped_jet_file(c, height), note)) return *profile;
   const std::filesystem::path file = jet_file(c, height);
-  if (std::filesystem::exists(file)) {
-    try {
-      return JetProfile::read(file);
-    } catch (const Error& e) {
-      note(fmt::format("{}; it is computed again", e.what()));
-    }
-  }
+  if (auto profile = read_jet(file, note)) return *profile;
   note(fmt::format("computing the jet of {} once; it is kept in {}", c.path, file.string()));
   JetModel jet(c);
   ProfileRecorder recorder(jet, height);

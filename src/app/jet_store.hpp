@@ -15,9 +15,13 @@ class JetModel;
 /// nobody asks for another plane.
 inline constexpr double kBoxHeight = 40e-3;
 
-/// The file of a jet in the cache: its name is the hash of everything the jet depends on (case without its
-/// title and outputs, height, precision, version of the numerics).
+/// The file of a jet, by name: the hash of everything the jet depends on (what its case changes of the
+/// defaults, without title and outputs; the valve's trace; height, precision, version of the numerics).
+std::string jet_file_name(const Case& jet, double height);
+/// The same in the cache of the user.
 std::filesystem::path jet_file(const Case& jet, double height);
+/// The same in the folder "jets" beside the case: jets that come with it, which nothing writes or clears.
+std::filesystem::path shipped_jet_file(const Case& jet, double height);
 
 /// Collects the profile of a running jet at the plane `height`, every 50 us and at the valve's events.
 class ProfileRecorder {
@@ -31,8 +35,8 @@ class ProfileRecorder {
   double next_ = 0.0;
 };
 
-/// The jet of a case at a plane: from the cache, else computed and stored. A damaged file is named through
-/// `note` and computed again.
+/// The jet of a case at a plane: the one that comes with the case, else from the cache, else computed and
+/// stored. A damaged file is named through `note` and passed over.
 JetProfile stored_or_computed_jet(const Case& jet, double height,
                                   const std::function<void(const std::string&)>& note);
 

@@ -8,4 +8,7 @@ namespace ejecta {
 /// The resolved case as TOML, every key with its value; load_case reads it back to the same bits.
 std::string write_case(const Case&);
 
+/// The same without the keys that have their default: stays as it is when the schema gains a key.
+std::string write_changes(const Case&);
+
 }  // namespace ejecta

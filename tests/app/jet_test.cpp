@@ -3,6 +3,7 @@
 
 #include <fstream>
 
+#include "app/computed_jet.hpp"
 #include "app/jet_measured.hpp"
 #include "app/jet_model.hpp"
 #include "app/jet_settled.hpp"
@@ -11,6 +12,7 @@
 #include "base/error.hpp"
 #include "case/load.hpp"
 #include "case/words.hpp"
+#include "output/build_info.hpp"
 
 using namespace ejecta;
 using testing::HasSubstr;
@@ -125,6 +127,54 @@ TEST_F(JetStore, TitleAndOutputsDoNotMatterTheValveDoes) {
   other.valve.supply_pressure *= 1.01;
   EXPECT_NE(jet_file(small_case(), 10e-3), jet_file(other, 10e-3));
   EXPECT_NE(jet_file(small_case(), 10e-3), jet_file(small_case(), 9e-3));
+}
+
+TEST_F(JetStore, ATraceCountsByWhatItSays) {
+  Case c = small_case();
+  c.path = (folder / "jet.toml").string();
+  c.valve.shape = ValveShape::trace;
+  c.valve.trace = "opening.csv";
+  const auto name_with = [&](const std::string& trace) {
+    std::ofstream(folder / "opening.csv") << trace;
+    return jet_file_name(c, 10e-3);
+  };
+  const std::string name = name_with("0,0\n1e-4,1\n");
+  EXPECT_NE(name, name_with("0,0\n2e-4,1\n"));
+  EXPECT_EQ(name, name_with("0,0\n1e-4,1\n"));
+}
+
+TEST_F(JetStore, AJetBesideItsCaseIsReadAndLeftAlone) {
+  Case c = small_case();
+  c.path = (folder / "case" / "jet.toml").string();
+  JetProfile beside(10e-3, {0.0, 1e-3});
+  beside.add({.time = 0.0, .axial = {123.0, 0.0}, .radial = {0, 0}, .k = {0, 0}, .epsilon = {0, 0}});
+  const fs::path file = shipped_jet_file(c, 10e-3);
+  beside.write(file);
+  const auto fastest = [&] {
+    return stored_or_computed_jet(c, 10e-3, [](const std::string&) {}).fastest(0.0);
+  };
+  EXPECT_EQ(fastest(), 123.0);
+  EXPECT_FALSE(fs::exists(jet_file(c, 10e-3)));
+  fs::resize_file(file, fs::file_size(file) - 8);
+  EXPECT_NE(fastest(), 123.0);
+  EXPECT_TRUE(fs::exists(jet_file(c, 10e-3)));
+}
+
+// Else the first run of a paper case would compute its jet for minutes. When this fails, store the jet anew
+// as cases/paper/jets/README.md says.
+TEST(PaperJet, ComesWithItsCases) {
+  if (output::precision() != "float") GTEST_SKIP() << "the stored jet is that of the float build";
+  int fed = 0;
+  for (const auto& entry : fs::directory_iterator(fs::path(EJECTA_SOURCE_DIR) / "cases" / "paper")) {
+    if (entry.path().extension() != ".toml") continue;
+    const Case box = load_case(entry.path().string());
+    if (box.jet.kind != JetKind::computed) continue;
+    const fs::path file = shipped_jet_file(computed_jet_case(box), computed_jet_height(box));
+    ASSERT_TRUE(fs::exists(file)) << entry.path() << " asks for " << file;
+    EXPECT_GT(JetProfile::read(file).fastest(7e-3), 100.0);
+    ++fed;
+  }
+  EXPECT_GE(fed, 8);
 }
 
 TEST(JetModel, RefusesAnOrificeThatIsNotTheValves) {

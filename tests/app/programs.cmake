@@ -18,3 +18,7 @@ set_tests_properties(app.paraview_live PROPERTIES SKIP_RETURN_CODE 77 LABELS fas
 add_test(NAME app.bodies COMMAND ejecta validate cases/bodies validation/dem/chung-ooi-5.toml validation/dem/chung-ooi-6.toml
          validation/dem/chung-ooi-8.toml verification/dem/flip-period.toml WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
 set_tests_properties(app.bodies PROPERTIES LABELS fast TIMEOUT 600)
+# The jet that comes with the paper's cases, computed again: minutes.
+add_test(NAME app.stored_jet COMMAND ${Python3_EXECUTABLE} ${CMAKE_CURRENT_LIST_DIR}/stored_jet_test.py $<TARGET_FILE:ejecta>
+         ${PROJECT_SOURCE_DIR}/cases/paper/10mm-cubic.toml)
+set_tests_properties(app.stored_jet PROPERTIES LABELS slow TIMEOUT 3600)
