@@ -14,13 +14,13 @@ struct SettledJet {
   double time = 0.0;  ///< s, blown for
   std::int64_t steps = 0;
   double equivalent_velocity = 0.0;  ///< m/s, by the momentum formula
-  Centreline line;
+  Centreline line{};
   /// N, of the air that blows forward: settles with the jet, long before the air drawn in around it does
   double momentum_at_stand_off = 0.0;
-  JetSample at_stand_off;                 ///< on the axis
-  std::vector<double> heights, momentum;  ///< m and N, of planes across the jet
+  JetSample at_stand_off{};                   ///< on the axis
+  std::vector<double> heights{}, momentum{};  ///< m and N, of planes across the jet
   double thrust = 0.0;                    ///< N, through the orifice
-  nlohmann::ordered_json momentum_summary;
+  nlohmann::ordered_json momentum_summary{};
 };
 
 /// The same orifice with its valve open from the start. Blows four times as long as the jet's head needs to
