@@ -19,7 +19,7 @@ struct SettledJet {
   double momentum_at_stand_off = 0.0;
   JetSample at_stand_off{};                   ///< on the axis
   std::vector<double> heights{}, momentum{};  ///< m and N, of planes across the jet
-  double thrust = 0.0;                    ///< N, through the orifice
+  double thrust = 0.0;                        ///< N, through the orifice
   nlohmann::ordered_json momentum_summary{};
 };
 
