@@ -6,6 +6,7 @@
 #include "app/grid_sampler.hpp"
 #include "app/jet_drive.hpp"
 #include "base/error.hpp"
+#include "base/state_reader.hpp"
 #include "base/stopwatch.hpp"
 #include "case/expression.hpp"
 #include "flow/godunov/from_case.hpp"
@@ -108,7 +109,7 @@ class CompressibleModel : public FlowModel {
     ledger["mass_relative_residual"] = std::abs(mass - mass_at_start_ - l.mass) / mass_at_start_;
     ledger["momentum_relative_residual"] = lost.norm() / scale;
     ledger["energy_relative_residual"] = std::abs(energy - energy_at_start_ - l.energy) /
-                                         std::max(std::abs(energy_at_start_), std::abs(l.energy));
+                                         std::max({std::abs(energy_at_start_), std::abs(l.energy), 1e-30});
     ledger["mass_kg"] = mass;
     if (case_.exact.density)
       add_errors(result, "density", *case_.exact.density, [](const GasState& s) { return s.density; });
@@ -140,10 +141,11 @@ class CompressibleModel : public FlowModel {
   void restore_numbers(std::span<const double> n, double time) override {
     time_ = time;
     BoundaryLedger& l = solver_->ledger();
-    l = {n[0], n[1], n[2], Vec3(n[3], n[4], n[5])};
-    momentum_at_start_ = {n[6], n[7], n[8]};
-    mass_at_start_ = n[9];
-    energy_at_start_ = n[10];
+    StateReader in(n, "ledger of the gas");
+    for (double* v : {&l.mass, &l.mass_inward, &l.energy}) *v = in.number();
+    for (Vec3* v : {&l.momentum, &momentum_at_start_}) *v = in.vec3();
+    for (double* v : {&mass_at_start_, &energy_at_start_}) *v = in.number();
+    in.end();
   }
 
  private:

@@ -7,6 +7,7 @@
 
 #include "app/jet_source.hpp"
 #include "base/error.hpp"
+#include "base/state_reader.hpp"
 #include "base/stopwatch.hpp"
 #include "case/copies.hpp"
 #include "dem/walls.hpp"
@@ -24,8 +25,6 @@ Grid grid_of(const Case& c) {
 
 /// Longest step without air, s: positions in histories and reports stay smooth.
 constexpr double kFlightStep = 1e-4;
-/// The dividing plate spans the belt and more, m.
-constexpr double kPlateWidth = 1.0;
 /// Share of its greatest kinetic energy below which the air counts as dead once the valve is closed.
 constexpr double kDeadAir = 1e-3;
 
@@ -85,7 +84,7 @@ void CoupledModel::place_bodies() {
   splitter_.emplace(case_.splitter, nozzle, height, gravity.z());
   splitter_->resize(particles_.bodies().size());
   if (!case_.splitter.solid) return;
-  WallSpec plate = splitter_->wall(kPlateWidth);
+  WallSpec plate = splitter_->wall();
   if (plate.material.empty()) plate.material = case_.bodies.front().material;
   particles_.add(make_wall(plate, particles_.materials(), ""));
 }
@@ -261,24 +260,21 @@ std::vector<std::vector<double>> CoupledModel::state_numbers() const {
 }
 
 void CoupledModel::restore_numbers(const std::vector<std::vector<double>>& numbers, double time) {
-  const std::vector<double>& own = numbers.at(0);
-  averaged_ = own.at(0), max_courant_ = own.at(1), peak_energy_ = own.at(2);
-  flow_steps_ = static_cast<std::int64_t>(own.at(3));
-  air_ = own.at(4) != 0.0;
-  std::size_t at = 5;
-  const auto next = [&] {
-    const Vec3 v(own.at(at), own.at(at + 1), own.at(at + 2));
-    at += 3;
-    return v;
-  };
+  if (numbers.size() != 5)
+    throw Error(fmt::format("the saved state has {} parts instead of 5", numbers.size()));
+  StateReader own(numbers[0], "model");
+  for (double* v : {&averaged_, &max_courant_, &peak_energy_}) *v = own.number();
+  flow_steps_ = static_cast<std::int64_t>(own.number());
+  air_ = own.whole(0, 1) == 1;
   for (auto* list : {&impulse_, &start_velocity_, &force_sum_, &torque_sum_})
-    for (Vec3& v : *list) v = next();
-  for (double& v : peak_speed_) v = own.at(at++);
-  for (Load& l : loads_) l.force = next(), l.torque = next();
-  particles_.restore(numbers.at(1));
-  if (flow_) flow_->restore_numbers(numbers.at(2), time);
-  if (coupling_) coupling_->restore(numbers.at(3));
-  if (splitter_) splitter_->restore(numbers.at(4));
+    for (Vec3& v : *list) v = own.vec3();
+  for (double& v : peak_speed_) v = own.number();
+  for (Load& l : loads_) l.force = own.vec3(), l.torque = own.vec3();
+  own.end();
+  particles_.restore(numbers[1]);
+  if (flow_) flow_->restore_numbers(numbers[2], time);
+  if (coupling_) coupling_->restore(numbers[3]);
+  if (splitter_) splitter_->restore(numbers[4]);
 }
 
 }  // namespace ejecta

@@ -8,6 +8,7 @@
 #include "app/jet_source.hpp"
 #include "app/round_jet.hpp"
 #include "base/error.hpp"
+#include "base/state_reader.hpp"
 #include "case/expression.hpp"
 #include "flow/piso/incompressible.hpp"
 
@@ -186,11 +187,11 @@ class IncompressibleModel : public FlowModel {
   }
   void restore_numbers(std::span<const double> n, double time) override {
     FlowLedger& l = flow_->ledger();
-    Vec3* vectors[] = {&l.momentum_through_boundaries, &l.impulse_on_solids, &momentum_at_start_};
-    for (std::size_t v = 0; v < 3; ++v) *vectors[v] = Vec3(n[3 * v], n[3 * v + 1], n[3 * v + 2]);
-    l.mass_through_boundaries = n[9];
-    l.mass_in = n[10];
-    l.leak = n[11];
+    StateReader in(n, "ledger of the air");
+    for (Vec3* v : {&l.momentum_through_boundaries, &l.impulse_on_solids, &momentum_at_start_})
+      *v = in.vec3();
+    for (double* v : {&l.mass_through_boundaries, &l.mass_in, &l.leak}) *v = in.number();
+    in.end();
     flow_->resume(time);
   }
 

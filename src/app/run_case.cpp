@@ -187,23 +187,28 @@ class Run {
     return reader_->at().time;
   }
 
+  /// A sealed checkpoint that does not fit is one of another version of the program.
   void restore() {
-    const auto read = [&](const std::string& name) {
-      std::vector<double> v(reader_->size(name));
-      reader_->get(name, std::span<double>(v));
-      return v;
-    };
+    try {
+      read_checkpoint();
+    } catch (const Error& e) {
+      throw InputError(fmt::format("{} cannot be resumed: {}\n  start anew:  ejecta run {} --out {} --force",
+                                   path_.string(), e.what(), case_.path, path_.string()));
+    }
+    reader_.reset();
+  }
+
+  void read_checkpoint() {
     const auto fields = model_.state_fields();
     for (std::size_t f = 0; f < fields.size(); ++f)
       reader_->get(fmt::format("flow/field_{:02}", f), std::span<Real>(fields[f]->data(), fields[f]->size()));
     std::vector<std::vector<double>> numbers;
     for (int n = 0; reader_->has(fmt::format("model/numbers_{}", n)); ++n)
-      numbers.push_back(read(fmt::format("model/numbers_{}", n)));
+      numbers.push_back(reader_->numbers(fmt::format("model/numbers_{}", n)));
     model_.restore_numbers(numbers, reader_->at().time);
-    outputs_->restore(read("outputs"));
-    wall_before_ = read("wall_time").at(0);
+    outputs_->restore(reader_->numbers("outputs"));
+    reader_->get("wall_time", std::span<double>(&wall_before_, 1));
     clock_.restore(reader_->at().time, reader_->at().step);
-    reader_.reset();
   }
 
   void conclude() {

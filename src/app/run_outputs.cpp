@@ -8,6 +8,7 @@
 #include "app/replay_header.hpp"
 #include "app/spacing.hpp"
 #include "base/clock.hpp"
+#include "base/state_reader.hpp"
 
 namespace ejecta {
 namespace {
@@ -313,14 +314,15 @@ std::vector<double> RunOutputs::state() const {
 }
 
 void RunOutputs::restore(const std::vector<double>& s) {
-  last_history_ = s.at(0), last_fields_ = s.at(1), last_slices_ = s.at(2), last_replay_ = s.at(3);
-  last_probe_time_ = s.at(4);
-  std::size_t at = 5;
+  StateReader in(s, "outputs");
+  for (double* v : {&last_history_, &last_fields_, &last_slices_, &last_replay_, &last_probe_time_})
+    *v = in.number();
   for (Probe& p : probes_) {
-    p.transducer = s.at(at++);
+    p.transducer = in.number();
     for (auto* list : {&p.values, &p.peak, &p.peak_time})
-      for (double& v : *list) v = s.at(at++);
+      for (double& v : *list) v = in.number();
   }
+  in.end();
 }
 
 }  // namespace ejecta

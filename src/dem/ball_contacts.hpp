@@ -4,6 +4,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/state_reader.hpp"
 #include "dem/domain.hpp"
 #include "dem/materials.hpp"
 #include "dem/parts.hpp"
@@ -46,7 +47,7 @@ class BallContacts {
   void rename(std::span<const int> names, int balls);
   /// Both sides and history of each pair that has one.
   void save(std::vector<double>& out) const;
-  const double* load(const double* in, int balls);
+  void load(StateReader& in, int balls);
 
  private:
   static std::size_t at(int n) { return static_cast<std::size_t>(n); }

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <limits>
 #include <tuple>
 
 #include "dem/ball_contacts.hpp"
@@ -99,23 +100,23 @@ void BallContacts::save(std::vector<double>& out) const {
   }
 }
 
-const double* BallContacts::load(const double* in, int balls) {
+void BallContacts::load(StateReader& in, int balls) {
+  constexpr std::size_t remembered = std::size(decltype(history_){});
   std::vector<std::pair<int, int>> pairs[2];
-  const double* histories[2];
+  std::vector<std::span<const double>> histories[2];
   for (int k = 0; k < 2; ++k) {
-    pairs[k].resize(static_cast<std::size_t>(*in++));
-    histories[k] = in;
-    for (auto& p : pairs[k]) {
-      p = {static_cast<int>(in[0]), static_cast<int>(in[1])};
-      in += 8;
+    pairs[k].resize(in.count(2 + remembered));
+    for (auto& [a, b] : pairs[k]) {
+      a = in.whole(0, balls - 1);
+      b = in.whole(0, k == 0 ? balls - 1 : std::numeric_limits<int>::max());
+      histories[k].push_back(in.numbers(remembered));
     }
   }
   arrange(pairs[0], pairs[1], balls);
   for (int k = 0; k < 2; ++k)
     for (std::size_t n = 0; n < pairs[k].size(); ++n)
       for (std::size_t h = 0; h < 6; ++h)
-        history_[h][n + (k == 0 ? 0 : at(planes_from_))] = histories[k][8 * n + 2 + h];
-  return in;
+        history_[h][n + (k == 0 ? 0 : at(planes_from_))] = histories[k][n][h];
 }
 
 }  // namespace ejecta

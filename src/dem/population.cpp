@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "base/error.hpp"
+#include "base/state_reader.hpp"
 #include "dem/particles.hpp"
 #include "dem/rotation.hpp"
 #include "dem/time_step.hpp"
@@ -13,9 +14,6 @@
 /// Particles: who is there, and what is stored of them.
 namespace ejecta {
 namespace {
-
-constexpr std::size_t kHead = 6;      // numbers stored before the bodies
-constexpr std::size_t kPerBody = 23;  // numbers stored of each body
 
 void append(std::vector<double>& out, const Vec3& v) { out.insert(out.end(), v.data(), v.data() + 3); }
 
@@ -195,31 +193,34 @@ std::vector<double> Particles::state() const {
 }
 
 void Particles::restore(std::span<const double> s) {
-  if (s.size() < kHead || s[1] != static_cast<double>(bodies_.size()) ||
-      s.size() < kHead + kPerBody * bodies_.size())
-    throw InputError(fmt::format("the checkpoint holds {} bodies, the case {}", s.size() < 2 ? 0.0 : s[1],
-                                 bodies_.size()));
-  time_ = s[0];
-  contact_work_ = s[2];
-  outer_work_ = s[3];
-  power_ = {s[4], s[5]};
-  const double* at = s.data() + kHead;
-  for (std::size_t n = 0; n < bodies_.size(); ++n, at += kPerBody) {
+  StateReader in(s, "bodies");
+  time_ = in.number();
+  const int count = static_cast<int>(bodies_.size());
+  in.whole(count, count);
+  contact_work_ = in.number();
+  outer_work_ = in.number();
+  power_.into_contacts = in.number();
+  power_.from_outside = in.number();
+  for (std::size_t n = 0; n < bodies_.size(); ++n) {
     Body& b = bodies_[n];
-    b.position = Vec3(at);
-    b.orientation.coeffs() = Eigen::Vector4d(at + 3);
-    b.velocity = Vec3(at + 7);
-    momentum_[n] = Vec3(at + 10);
-    force_[n] = Vec3(at + 13);
-    torque_[n] = Vec3(at + 16);
-    peaks_[n] = {at[19], at[20], at[21]};
-    presence_[n] = static_cast<Presence>(static_cast<int>(at[22]));
+    b.position = in.vec3();
+    b.orientation.coeffs() = Eigen::Vector4d(in.numbers(4).data());
+    b.velocity = in.vec3();
+    momentum_[n] = in.vec3();
+    force_[n] = in.vec3();
+    torque_[n] = in.vec3();
+    peaks_[n].overlap = in.number();
+    peaks_[n].force = in.number();
+    peaks_[n].time = in.number();
+    presence_[n] = static_cast<Presence>(in.whole(0, static_cast<int>(Presence::gone)));
     parts_.set_here(static_cast<int>(n), presence_[n] == Presence::here);
     launches_[n].waiting = time_ < b.release_at || presence_[n] == Presence::waiting;
     b.angular_velocity = angular_velocity(b.orientation, momentum_[n], b.inertia);
     parts_.update(static_cast<int>(n), b, b.velocity, b.angular_velocity);
   }
-  solids_.load(balls_.load(at, parts_.ball_count()));
+  balls_.load(in, parts_.ball_count());
+  solids_.load(in, count);
+  in.end();
   relist_ = true;
 }
 

@@ -1,6 +1,7 @@
 #include "dem/solid_contacts.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <numeric>
 
 #include "dem/blocks.hpp"
@@ -115,20 +116,21 @@ void SolidContacts::save(std::vector<double>& out) const {
   }
 }
 
-const double* SolidContacts::load(const double* in) {
-  pairs_.assign(static_cast<std::size_t>(*in++), {});
+void SolidContacts::load(StateReader& in, int bodies) {
+  constexpr int any = std::numeric_limits<int>::max();
+  pairs_.assign(in.count(15), {});
   for (SolidPair& p : pairs_) {
     for (PartKey* k : {&p.a, &p.b}) {
-      k->kind = static_cast<PartKind>(static_cast<int>(*in++));
-      k->index = static_cast<int>(*in++);
-      k->solid = static_cast<int>(*in++);
+      k->kind = static_cast<PartKind>(in.whole(0, static_cast<int>(PartKind::wall_solid)));
+      k->index = in.whole(0, any);
+      k->solid = in.whole(0, any);
     }
-    p.body_a = static_cast<int>(*in++);
-    p.body_b = static_cast<int>(*in++);
+    p.body_a = in.whole(0, bodies - 1);
+    p.body_b = in.whole(-1, bodies - 1);
     ContactHistory& h = p.history;
-    for (double* v : {&h.slip.x, &h.slip.y, &h.slip.z, &h.roll.x, &h.roll.y, &h.roll.z, &h.twist}) *v = *in++;
+    for (double* v : {&h.slip.x, &h.slip.y, &h.slip.z, &h.roll.x, &h.roll.y, &h.roll.z, &h.twist})
+      *v = in.number();
   }
-  return in;
 }
 
 }  // namespace ejecta

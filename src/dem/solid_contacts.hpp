@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "base/state_reader.hpp"
 #include "dem/materials.hpp"
 #include "dem/parts.hpp"
 #include "dem/walls.hpp"
@@ -76,7 +77,7 @@ class SolidContacts {
   double elastic() const;
   double wall_power() const;
   void save(std::vector<double>& out) const;
-  const double* load(const double* in);
+  void load(StateReader& in, int bodies);
   /// Keeps only pairs for which `rename` returns true after changing them.
   template <class Rename>
   void rename(const Rename& rename) {

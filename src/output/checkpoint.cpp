@@ -100,9 +100,14 @@ struct CheckpointReader::Impl {
     return data;
   }
 
-  std::size_t size(const Hdf5Handle& data) const {
-    const Hdf5Handle space(H5Dget_space(data), H5Sclose);
-    return static_cast<std::size_t>(std::max<hssize_t>(0, H5Sget_simple_extent_npoints(space)));
+  /// What an array claims to hold must be there: it is trusted when memory is taken for it.
+  std::size_t size(const Hdf5Handle& data, const std::string& name) const {
+    const Hdf5Handle space(H5Dget_space(data), H5Sclose), type(H5Dget_type(data), H5Tclose);
+    const hsize_t stored = H5Dget_storage_size(data);
+    const hssize_t n = H5Sget_simple_extent_npoints(space);
+    if (n < 0 || stored / std::max<std::size_t>(H5Tget_size(type), 1) != static_cast<hsize_t>(n))
+      throw error(fmt::format("\"{}\" is not stored in full", name));
+    return static_cast<std::size_t>(n);
   }
 
   template <class T>
@@ -112,7 +117,7 @@ struct CheckpointReader::Impl {
     const Hdf5Handle type(H5Dget_type(data), H5Tclose);
     if (H5Tequal(type, hdf5_type<T>()) <= 0)
       throw error(fmt::format("\"{}\" has another type (float or double build?)", name));
-    if (const std::size_t n = size(data); n != values.size())
+    if (const std::size_t n = size(data, name); n != values.size())
       throw error(fmt::format("\"{}\" has {} values instead of {}", name, n, values.size()));
     if (H5Dread(data, hdf5_type<T>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0)
       throw error(fmt::format("\"{}\" cannot be read", name));
@@ -144,13 +149,19 @@ bool CheckpointReader::has(const std::string& name) const {
 
 std::size_t CheckpointReader::size(const std::string& name) const {
   const Hdf5Silence silence;
-  return impl_->size(impl_->open(name));
+  return impl_->size(impl_->open(name), name);
 }
 
 void CheckpointReader::get(const std::string& name, std::span<double> v) const { impl_->get(name, v); }
 void CheckpointReader::get(const std::string& name, std::span<float> v) const { impl_->get(name, v); }
 void CheckpointReader::get(const std::string& name, std::span<std::int64_t> v) const { impl_->get(name, v); }
 void CheckpointReader::get(const std::string& name, std::span<std::uint8_t> v) const { impl_->get(name, v); }
+
+std::vector<double> CheckpointReader::numbers(const std::string& name) const {
+  std::vector<double> values(size(name));
+  get(name, std::span<double>(values));
+  return values;
+}
 
 CheckpointStore::CheckpointStore(fs::path directory, int keep)
     : directory_(std::move(directory)), keep_(keep) {}

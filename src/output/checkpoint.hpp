@@ -53,13 +53,15 @@ class CheckpointReader {
   const std::filesystem::path& path() const;
   CheckpointTime at() const;
   bool has(const std::string& name) const;
-  /// Number of values; throws Error when there is no such array.
+  /// Number of values; throws Error when there is no such array, or not all of it is in the file.
   std::size_t size(const std::string& name) const;
   /// Fills `values`; throws Error unless the array has this type and length.
   void get(const std::string& name, std::span<double> values) const;
   void get(const std::string& name, std::span<float> values) const;
   void get(const std::string& name, std::span<std::int64_t> values) const;
   void get(const std::string& name, std::span<std::uint8_t> values) const;
+  /// All values of an array of doubles.
+  std::vector<double> numbers(const std::string& name) const;
 
  private:
   struct Impl;

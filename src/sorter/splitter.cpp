@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "base/state_reader.hpp"
+
 namespace ejecta {
 
 Splitter::Splitter(const SplitterSpec& spec, const Vec3& nozzle, double undisturbed_height, double gravity_z)
@@ -9,11 +11,11 @@ Splitter::Splitter(const SplitterSpec& spec, const Vec3& nozzle, double undistur
       edge_(nozzle.x() + spec.distance, nozzle.y(), undisturbed_height + spec.height),
       gravity_z_(gravity_z) {}
 
-WallSpec Splitter::wall(double width) const {
+WallSpec Splitter::wall() const {
   WallSpec wall;
   wall.name = "dividing plate";
   wall.kind = WallKind::box;
-  wall.size = {spec_.length, width, spec_.thickness};
+  wall.size = {spec_.length, kWidth, spec_.thickness};
   wall.point = edge_ + 0.5 * Vec3(spec_.length, 0.0, -spec_.thickness);
   wall.material = spec_.material;
   return wall;
@@ -65,13 +67,16 @@ std::vector<double> Splitter::state() const {
 }
 
 void Splitter::restore(std::span<const double> state) {
-  verdicts_.assign(state.size() / 6, std::nullopt);
-  approach_.resize(verdicts_.size());
+  StateReader in(state, "verdicts");
   for (std::size_t b = 0; b < verdicts_.size(); ++b) {
-    const double* s = state.data() + 6 * b;
-    if (s[0] != 0.0) verdicts_[b] = Verdict{s[0] == 2.0, s[1], s[2], s[3]};
-    approach_[b] = {s[4], s[5]};
+    const int known = in.whole(0, 2);
+    const Vec3 v = in.vec3();
+    verdicts_[b].reset();
+    if (known > 0) verdicts_[b] = Verdict{known == 2, v[0], v[1], v[2]};
+    approach_[b].velocity = in.number();
+    approach_[b].clearance = in.number();
   }
+  in.end();
 }
 
 }  // namespace ejecta

@@ -25,8 +25,9 @@ class Splitter {
   Splitter(const SplitterSpec& spec, const Vec3& nozzle, double undisturbed_height, double gravity_z);
 
   const Vec3& edge() const { return edge_; }
-  /// The plate as bodies hit it: it lies level behind its edge, `width` m wide.
-  WallSpec wall(double width) const;
+  static constexpr double kWidth = 1.0;  ///< m: the plate spans the belt and more
+  /// The plate as bodies hit it: it lies level behind its edge.
+  WallSpec wall() const;
   /// To be called after every step, with the positions before it and the time after it.
   void watch(std::span<const Body> bodies, std::span<const Vec3> before, double time, double dt);
   const std::optional<Verdict>& verdict(std::size_t body) const { return verdicts_.at(body); }

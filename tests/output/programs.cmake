@@ -55,4 +55,5 @@ endforeach()
 include(${PROJECT_SOURCE_DIR}/cmake/fuzz.cmake)
 ejecta_fuzz(checkpoint
   SOURCES output/checkpoint.cpp output/checkpoint_seal.cpp output/output_file.cpp output/sha256.cpp
-  INCLUDES ${HDF5_INCLUDE_DIRS} LIBS ${HDF5_C_LIBRARIES} -lfmt)
+          base/state_reader.cpp
+  INCLUDES ${HDF5_INCLUDE_DIRS} ${EIGEN3_INCLUDE_DIRS} LIBS ${HDF5_C_LIBRARIES} -lfmt)

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/parallel.hpp"
+#include "base/state_reader.hpp"
 
 namespace ejecta {
 namespace {
@@ -173,13 +174,14 @@ std::vector<double> ResolvedCoupling::state() const {
 }
 
 void ResolvedCoupling::restore(std::span<const double> state) {
+  StateReader in(state, "forces on the bodies");
   motion_.resize(state.size() / 7);
-  for (std::size_t b = 0; b < motion_.size(); ++b) {
-    const double* s = state.data() + 7 * b;
-    motion_[b].velocity = Vec3(s[0], s[1], s[2]);
-    motion_[b].angular_momentum = Vec3(s[3], s[4], s[5]);
-    motion_[b].known = s[6] != 0.0;
+  for (Before& m : motion_) {
+    m.velocity = in.vec3();
+    m.angular_momentum = in.vec3();
+    m.known = in.whole(0, 1) == 1;
   }
+  in.end();
 }
 
 }  // namespace ejecta
