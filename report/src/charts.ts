@@ -24,6 +24,8 @@ export interface ChartSpec {
   series: Series[];
   /** Charts over time (ms) share a cursor, show the player's time and set it when clicked. */
   player?: Player;
+  /** The part of the x axis shown at first; a double click shows all. */
+  part?: [number, number];
 }
 
 const FONT = "12px ui-sans-serif, system-ui, sans-serif";
@@ -47,12 +49,25 @@ function tickTexts(_plot: uPlot, list: number[], _axis: number, _space: number, 
 }
 
 /** A prefix that makes the largest value readable: newton metres become micronewton metres. */
-export function prefixFor(largest: number, unit: string): { factor: number; unit: string } {
+function prefixFor(largest: number, unit: string): { factor: number; unit: string } {
   const plain = { factor: 1, unit };
   if (!/^(N|Pa|J|W)\b/.test(unit) || !(largest > 0) || (largest >= 0.1 && largest < 1e4)) return plain;
   const power = Math.min(2, Math.max(-3, Math.floor(Math.log10(largest) / 3)));
   const prefix = ["n", "\u00b5", "m", "", "k", "M"][power + 3]!;
   return { factor: 10 ** (-3 * power), unit: prefix + unit };
+}
+
+/** Series and the unit they are shown in. */
+export function inReadableUnit(series: Series[], unit: string): { series: Series[]; unit: string } {
+  let largest = 0;
+  for (const s of series) for (let n = 0; n < s.values.length; ++n) largest = Math.max(largest, Math.abs(s.values[n] ?? 0));
+  const scale = prefixFor(largest, unit);
+  if (scale.factor === 1) return { series, unit };
+  const scaled = (v: number | null): number | null => (v == null ? null : v * scale.factor);
+  return {
+    unit: scale.unit,
+    series: series.map((s) => ({ ...s, values: Array.from(s.values as ArrayLike<number | null>, scaled) as number[] })),
+  };
 }
 
 export function chart(spec: ChartSpec, height = 210): HTMLElement {
@@ -98,14 +113,15 @@ export function chart(spec: ChartSpec, height = 210): HTMLElement {
         },
       ],
       series: [
-        { label: spec.xLabel, value: (_u, v) => (v == null ? "\u2013" : short(v, 4)) },
+        { label: spec.xLabel, value: (_u, v) => (v == null ? "" : short(v, 4)) },
         ...spec.series.map((s): uPlot.Series => ({
           label: s.label, stroke: s.colour(dark), width: s.points ? 0 : 1.6, dash: s.dashed ? [6, 4] : undefined,
           points: { show: s.points === true, size: 7 }, spanGaps: s.joined, pxAlign: 0,
-          value: (_u, v) => (v == null ? "\u2013" : text(v)),
+          value: (_u, v) => (v == null ? "" : text(v)),
         })),
       ],
     }, [spec.x, ...spec.series.map((s) => s.values)] as unknown as uPlot.AlignedData, holder);
+    if (spec.part) plot.setScale("x", { min: spec.part[0], max: spec.part[1] });
     if (spec.player) {
       plot.over.append(marker);
       plot.over.addEventListener("click", (event) => {

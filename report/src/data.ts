@@ -198,6 +198,14 @@ export function columnOf(table: Table, name: string): Float32Array | undefined {
   return n < 0 ? undefined : table.values[n];
 }
 
+/** The box of the air; a run of bodies alone has none. */
+export function hasBox(replay: Replay): boolean {
+  return replay.domain[1][0] > replay.domain[0][0];
+}
+
+/** More bodies than this are shown as a crowd, not one by one. */
+export const CROWD = 12;
+
 export function bodiesOf(run: Run): JsonObject[] {
   const bodies = run.result?.["bodies"];
   return Array.isArray(bodies) ? (bodies as JsonObject[]) : [];

@@ -39,6 +39,11 @@ export function duration(seconds: number): string {
   return `${Math.floor(whole / 3600)} h ${Math.floor((whole % 3600) / 60)} min`;
 }
 
+/** Bytes as memory is sold: 25276514304 -> 25.3 GB. */
+export function bytes(count: number): string {
+  return count < 1e9 ? `${short(count / 1e6)} MB` : `${short(count / 1e9)} GB`;
+}
+
 /** "momentum_relative_residual" -> "Momentum relative residual". */
 export function words(key: string): string {
   const text = key.replace(/_/g, " ");
@@ -52,6 +57,11 @@ export function labelOf(key: string): string {
   if (!found) return words(key);
   const unit = { rad_s: "rad/s", m_s: "m/s", N_s: "N\u00b7s", N_m: "N\u00b7m" }[found[2]!] ?? found[2]!;
   return `${words(found[1]!)} [${unit}]`;
+}
+
+/** Keeps every number of a sentence on one line with its unit. */
+export function unbroken(sentence: string): string {
+  return sentence.replace(/(\d) (?=\S)/g, "$1\u00a0");
 }
 
 /** Unit as printed: "N m" -> "N·m", "1" -> nothing. */

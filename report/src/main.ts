@@ -3,8 +3,9 @@ import { bodyColour, isDark } from "./colour";
 import { readRuns, type Run } from "./data";
 import { h, section } from "./dom";
 import { figureCharts, pictureViews } from "./figures";
+import { unbroken } from "./format";
 import { motionCharts, seriesCharts } from "./motion_charts";
-import { pathView } from "./path";
+import { pathNote, pathView } from "./path";
 import { Player } from "./player";
 import { profileCharts } from "./profile_charts";
 import { replayView } from "./replay_view";
@@ -36,11 +37,13 @@ function paintSwatches(): void {
     swatch.style.setProperty("--colour", bodyColour(Number(swatch.dataset["body"]), isDark()));
 }
 
-/** From the first to the last moment of any run; starts where the air pushes hardest on a body, or blows fastest. */
+/** From the first to the last moment of any run; starts where the air pushes hardest on a body, or blows fastest, or
+ * without air at the end. */
 function makePlayer(runs: Run[]): Player {
   const times = runs.flatMap((run) => [
     ...(run.replay?.frames.map((f) => f.time) ?? []), ...[...run.history.values()].flatMap((t) => [t.values[0]![0] ?? 0, t.values[0]!.at(-1) ?? 0])]);
   const player = new Player(times.length ? Math.min(...times) : 0, times.length ? Math.max(...times) : 1);
+  player.time = player.end;
   let fastest = 0;
   for (const frame of runs[0]?.replay?.frames ?? [])
     for (const slice of frame.slices.values())
@@ -69,10 +72,10 @@ function titleOf(runs: Run[]): string {
 
 function verdict(runs: Run[]): HTMLElement {
   const head = h("header", { class: "verdict" }, h("p", { class: "title" }, titleOf(runs)));
-  if (runs.length === 1) head.append(h("h1", { id: "verdict" }, runs[0]!.verdict));
+  if (runs.length === 1) head.append(h("h1", { id: "verdict" }, unbroken(runs[0]!.verdict)));
   else head.append(h("h1", {}, `${runs.length} runs compared`),
     h("ul", { class: "verdicts" }, ...runs.map((run, r) => h("li", {},
-      h("span", { class: r > 0 ? "swatch dashed ink" : "swatch ink" }), h("strong", {}, `${run.name}: `), run.verdict))));
+      h("span", { class: r > 0 ? "swatch dashed ink" : "swatch ink" }), h("strong", {}, `${run.name}: `), unbroken(run.verdict)))));
   const cards = bodyCards(runs);
   if (cards) head.append(cards);
   return head;
@@ -96,13 +99,13 @@ function page(runs: Run[]): HTMLElement {
   const grid = (charts: HTMLElement[]): HTMLElement | null =>
     charts.length > 0 ? h("div", { class: "chart-grid" }, ...charts) : null;
 
-  add("path", "Path", "Side view to scale. Faint outlines are equally far apart in time.", pathView(runs, player));
+  add("path", "Path", pathNote(runs), pathView(runs, player));
   add("replay", "Replay", "", replayView(runs, player));
   add("motion", "Motion", "x along the belt, y across it, z up and along the jet.", motionCharts(runs, player));
   add("jet", "Jet", "", ...pictureViews(runs), grid([...figureCharts(runs), ...profileCharts(runs), ...seriesCharts(runs, player, (n) => n.startsWith("probe-"))]));
   add("expected", "Expected values", "", ...runs.map(expectationTable));
   add("books", "Books and cost", "What goes in minus what comes out, relative to what went through; and where the time went.",
-    runs.some((run) => run.result) ? h("div", { class: "columns" }, costTable(runs), ledgerTable(runs)) : null, ...runs.map(operatorTable),
+    runs.some((run) => run.result) ? h("div", { class: runs.length > 1 ? "" : "columns" }, costTable(runs), ledgerTable(runs)) : null, ...runs.map(operatorTable),
     grid(seriesCharts(runs, player, (n) => !/^(body|line|probe)-/.test(n))));
   add("assumptions", "Assumptions", "Taken for granted by this run; each can be changed in the case file.", ...runs.map(assumptionList));
   add("provenance", "Provenance", "", provenanceTable(runs), ...runs.filter((run) => run.caseText).map(caseFile),

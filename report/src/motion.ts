@@ -51,6 +51,14 @@ export function placed(surface: Surface, pose: Pose): Float64Array {
   return out;
 }
 
+/** Largest distance of a vertex from the centre, m. */
+export function radius(surface: Surface): number {
+  let largest = 0;
+  for (let n = 0; n < surface.vertices.length; n += 3)
+    largest = Math.max(largest, Math.hypot(...surface.vertices.subarray(n, n + 3)));
+  return largest;
+}
+
 /** Convex outline of points in a plane (Andrew's monotone chain). */
 export function hull(points: [number, number][]): [number, number][] {
   const sorted = [...points].sort((a, b) => a[0] - b[0] || a[1] - b[1]);

@@ -1,6 +1,6 @@
-import { chart, axisLabel, prefixFor, type Series } from "./charts";
+import { chart, axisLabel, inReadableUnit, type Series } from "./charts";
 import { bodyColour, componentColour } from "./colour";
-import { columnOf, type Run, type Table } from "./data";
+import { CROWD, columnOf, type Run, type Table } from "./data";
 import { h } from "./dom";
 import { words } from "./format";
 import type { Player } from "./player";
@@ -16,6 +16,14 @@ const COMPONENTS = ["x", "y", "z"];
 
 const milliseconds = (table: Table): Float64Array => Float64Array.from(table.values[0]!, (t) => t * 1e3);
 
+/** The time in which air was computed, ms, where that is the lesser part of the run. */
+function airTime(runs: Run[]): [number, number] | undefined {
+  const last = (all: boolean): number => Math.max(0, ...runs.flatMap((run) =>
+    run.replay?.frames.filter((f) => all || f.slices.size > 0).map((f) => f.time) ?? []));
+  const until = last(false);
+  return until > 0 && until < 0.6 * last(true) ? [0, until * 1e3] : undefined;
+}
+
 /** Values of `table` at the times of another one, straight lines between rows. */
 function resampled(times: ArrayLike<number>, table: Table, values: Float32Array): (number | null)[] {
   const own = milliseconds(table);
@@ -27,19 +35,6 @@ function resampled(times: ArrayLike<number>, table: Table, values: Float32Array)
     const s = span > 0 ? (t - own[n]!) / span : 0;
     return values[n]! + s * (values[n + 1]! - values[n]!);
   });
-}
-
-/** Series and the unit they are shown in. */
-function inReadableUnit(series: Series[], unit: string): { series: Series[]; unit: string } {
-  let largest = 0;
-  for (const s of series) for (let n = 0; n < s.values.length; ++n) largest = Math.max(largest, Math.abs(s.values[n] ?? 0));
-  const scale = prefixFor(largest, unit);
-  if (scale.factor === 1) return { series, unit };
-  const scaled = (v: number | null): number | null => (v == null ? null : v * scale.factor);
-  return {
-    unit: scale.unit,
-    series: series.map((s) => ({ ...s, values: Array.from(s.values as ArrayLike<number | null>, scaled) as number[] })),
-  };
 }
 
 /** Velocity, force, torque and spin of one body over time; further runs dashed. */
@@ -67,14 +62,15 @@ function chartsOfBody(name: string, runs: Run[], player: Player): HTMLElement {
     const silent = series.every((s) => Array.prototype.every.call(s.values, (v) => !v));
     if (series.length === 0 || (silent && prefix === "contact_force")) continue;
     const shown = inReadableUnit(series, unit);
+    const part = /^(force|torque)$/.test(prefix) ? airTime(found.map((f) => f.run)) : undefined;
     grid.append(chart({
-      title, xLabel: "time [ms]", yLabel: axisLabel(prefix.replace("_", " "), shown.unit), x, series: shown.series, player,
+      title: part ? `${title} while it is computed` : title, part, xLabel: "time [ms]", yLabel: axisLabel(prefix.replace("_", " "), shown.unit), x, series: shown.series, player,
     }));
   }
   return grid;
 }
 
-/** One tab a body. */
+/** One tab a body; a list to choose from where they are a crowd. */
 export function motionCharts(runs: Run[], player: Player): HTMLElement | null {
   const names = [...new Set(runs.flatMap((run) =>
     [...run.history.keys()].filter((k) => k.startsWith("body-")).map((k) => k.slice(5))))];
@@ -82,6 +78,13 @@ export function motionCharts(runs: Run[], player: Player): HTMLElement | null {
   if (names.length === 1) return chartsOfBody(names[0]!, runs, player);
   const holder = h("div", {});
   const made = new Map<string, HTMLElement>();
+  if (names.length > CROWD) {
+    const chooser = h("select", {}, ...names.map((name) => h("option", { value: name }, name)));
+    const show = (): void => holder.replaceChildren(chartsOfBody(chooser.value, runs, player));
+    chooser.addEventListener("change", show);
+    show();
+    return h("div", {}, h("label", { class: "field body-chooser" }, h("span", {}, "Body"), chooser), holder);
+  }
   const tabs = h("div", { class: "tabs", role: "group", "aria-label": "Body" });
   const show = (name: string): void => {
     if (!made.has(name)) made.set(name, chartsOfBody(name, runs, player));

@@ -1,8 +1,8 @@
 import { bodyColour, isDark } from "./colour";
-import { columnOf, bodiesOf, type Run } from "./data";
+import { CROWD, columnOf, bodiesOf, hasBox, type Run } from "./data";
 import { h, svg } from "./dom";
 import { fixed, ticks } from "./format";
-import { hull, placed, poseAt } from "./motion";
+import { hull, placed, poseAt, radius } from "./motion";
 import type { Player } from "./player";
 
 type Point = [number, number];
@@ -59,6 +59,12 @@ function heightAt(points: Point[], x: number): number | undefined {
   return undefined;
 }
 
+/** How the side view is to be read. */
+export function pathNote(runs: Run[]): string {
+  const crowd = tracksOf(runs).length > CROWD;
+  return crowd ? "Side view to scale." : "Side view to scale. Faint outlines are equally far apart in time.";
+}
+
 /** Side view (x, z) of the bodies' paths, with the plate, the nozzle and the paths without air. */
 export function pathView(runs: Run[], player: Player): HTMLElement | null {
   const tracks = tracksOf(runs);
@@ -71,11 +77,12 @@ export function pathView(runs: Run[], player: Player): HTMLElement | null {
     all.push([p.edge[0] + p.along[0] * p.length, p.edge[2] + p.along[2] * p.length]);
   }
   for (const n of replay?.nozzles ?? []) all.push([n.position[0], n.position[2] - 0.006]);
-  if (replay) for (const corner of replay.domain) all.push([corner[0], corner[2]]);
+  if (replay && hasBox(replay)) for (const corner of replay.domain) all.push([corner[0], corner[2]]);
+  const largest = Math.max(0, ...tracks.map((t) => t.run.replay ? radius(t.run.replay.bodies[t.body]!) : 0));
   const finite = all.filter((p) => p.every(Number.isFinite));
   const range = (d: 0 | 1): Point => {
     const [low, high] = finite.reduce((r, p) => [Math.min(r[0], p[d]), Math.max(r[1], p[d])], [Infinity, -Infinity] as Point);
-    const pad = 0.02 * (high - low);
+    const pad = Math.max(0.02 * (high - low), largest);
     return [low - pad, high + pad];
   };
   const [[x0, x1], [z0, z1]] = [range(0), range(1)];
@@ -122,7 +129,7 @@ export function pathView(runs: Run[], player: Player): HTMLElement | null {
 
     if (replay) {
       const [a, b] = replay.domain;
-      root.append(svg("rect", {
+      if (hasBox(replay)) root.append(svg("rect", {
         x: X(a[0]), y: Z(b[2]), width: (b[0] - a[0]) * scale, height: (b[2] - a[2]) * scale, class: "domain",
       }), svg("text", { x: X(a[0]) + 6, y: Z(b[2]) + 15, class: "note" }, "air computed here"));
       for (const n of replay.nozzles) {
@@ -144,8 +151,8 @@ export function pathView(runs: Run[], player: Player): HTMLElement | null {
       const stroke = bodyColour(t.colour, dark);
       if (t.undisturbed.length > 1)
         root.append(svg("path", { d: line(t.undisturbed), class: "undisturbed", stroke }));
-      root.append(svg("path", { d: line(t.points), class: "track", stroke, "stroke-dasharray": t.dashed && "8 4" }));
-      if (t.run.replay && !t.dashed)
+      root.append(svg("path", { d: line(t.points), class: tracks.length > CROWD ? "track faint" : "track", stroke, "stroke-dasharray": t.dashed && "8 4" }));
+      if (t.run.replay && !t.dashed && tracks.length <= CROWD)
         for (let n = 0; n <= 14; ++n)
           root.append(svg("path", {
             d: outline(t, player.start + (n / 14) * (player.end - player.start)), class: "strobe", fill: stroke, stroke,
@@ -168,7 +175,9 @@ export function pathView(runs: Run[], player: Player): HTMLElement | null {
           }, millimetres(t.clearance)));
       });
 
-    const now = tracks.map((t) => svg("path", { class: "now", fill: bodyColour(t.colour, dark) }));
+    const now = tracks.map((t) => svg("path", {
+      class: t.dashed ? "now ghost" : "now", fill: bodyColour(t.colour, dark), stroke: t.dashed && bodyColour(t.colour, dark),
+    }));
     root.append(...now);
     update = (time) => tracks.forEach((t, n) => t.run.replay && now[n]!.setAttribute("d", outline(t, time)));
     update(player.time);
@@ -180,7 +189,7 @@ export function pathView(runs: Run[], player: Player): HTMLElement | null {
   document.addEventListener("themechange", draw);
 
   const key = h("ul", { class: "key" });
-  for (const t of tracks)
+  for (const t of tracks.length > CROWD ? [] : tracks)
     key.append(h("li", {}, h("span", { class: t.dashed ? "swatch dashed" : "swatch", "data-body": t.colour }), t.label,
       t.clearance === undefined ? null : h("strong", {}, ` ${millimetres(t.clearance)}`), t.clearance === undefined ? null : " from the edge"));
   if (tracks.some((t) => t.undisturbed.length > 1))

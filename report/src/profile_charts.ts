@@ -1,4 +1,4 @@
-import { chart, axisLabel, type Series } from "./charts";
+import { chart, axisLabel, inReadableUnit, type Series } from "./charts";
 import { bodyColour, viridis } from "./colour";
 import { columnOf, type Run, type Table } from "./data";
 import { fixed, words } from "./format";
@@ -48,11 +48,13 @@ function finalProfiles(runs: Run[]): HTMLElement[] {
     const once = Object.entries(lines).filter(([name]) => !run.history.has(`line-${name}`));
     return once.flatMap(([name, line]) => {
       const x = (line["position_m"] ?? []).map((v) => v * 1e3);
-      return Object.entries(line).filter(([quantity]) => quantity !== "position_m").map(([quantity, values]) => chart({
-        title: `Line ${name} at the end: ${words(quantity).toLowerCase()}${runs.length > 1 ? `, ${run.name}` : ""}`,
-        xLabel: "position [mm]", yLabel: axisLabel(quantity.replace(/_/g, " "), unitIn(run, quantity)), x,
-        series: [{ label: words(quantity), values, colour: (dark) => bodyColour(0, dark) }],
-      }));
+      return Object.entries(line).filter(([quantity]) => quantity !== "position_m").map(([quantity, values]) => {
+        const shown = inReadableUnit([{ label: words(quantity), values, colour: (dark) => bodyColour(0, dark) }], unitIn(run, quantity));
+        return chart({
+          title: `Line ${name} at the end: ${words(quantity).toLowerCase()}${runs.length > 1 ? `, ${run.name}` : ""}`,
+          xLabel: "position [mm]", yLabel: axisLabel(quantity.replace(/_/g, " "), shown.unit), x, series: shown.series,
+        });
+      });
     });
   });
 }
@@ -81,7 +83,10 @@ export function profileCharts(runs: Run[]): HTMLElement[] {
           colour: ofTime(n, count),
         }));
         const title = `Line ${name.slice(5)}: ${words(column.name).toLowerCase()}${runs.length > 1 ? `, ${run.name}` : ""}`;
-        charts.push(chart({ title, xLabel: "position [mm]", yLabel: axisLabel(column.name.replace(/_/g, " "), column.unit), x, series }));
+        const shown = inReadableUnit(series, column.unit);
+        charts.push(chart({
+          title, xLabel: "position [mm]", yLabel: axisLabel(column.name.replace(/_/g, " "), shown.unit), x, series: shown.series,
+        }));
       });
     }
   return charts;

@@ -84,7 +84,8 @@ export function replayView(runs: Run[], player: Player): HTMLElement | null {
       scene = new SceneView(shown, player);
       if (air) scene.select(air);
       const views = h("div", { class: "tabs", role: "group", "aria-label": "Look from" });
-      const wanted: View[] = replay.bodies.length > 0 ? ["jet", "flight", "side", "above", "follow"] : ["jet", "side", "above"];
+      const wanted: View[] = [...(air ? ["jet" as const] : []), ...(replay.bodies.length > 0 ? ["flight" as const] : []), "side", "above",
+        ...(replay.bodies.length > 0 ? ["follow" as const] : [])];
       for (const view of wanted) {
         const tab = h("button", { type: "button" }, view.charAt(0).toUpperCase() + view.slice(1));
         tab.addEventListener("click", () => scene!.look(view));

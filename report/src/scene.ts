@@ -6,7 +6,7 @@ import {
 } from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 import { bodyColour } from "./colour";
-import { columnOf, type Plate, type Raster, type Run, type Vec3 } from "./data";
+import { CROWD, columnOf, hasBox, type Plate, type Raster, type Replay, type Run, type Vec3 } from "./data";
 import { h } from "./dom";
 import { poseAt } from "./motion";
 import type { Player } from "./player";
@@ -37,13 +37,20 @@ function airPlane(raster: Raster, image: AirImage): { mesh: Mesh; texture: Canva
   return { mesh, texture };
 }
 
-function plateMesh(p: Plate): Mesh {
-  const mesh = new Mesh(new BoxGeometry(p.length, p.width, p.thickness),
-    new MeshStandardMaterial({ color: 0x9fb0c3, metalness: 0.6, roughness: 0.4 }));
+/** The plate: solid as wide as what happens in front of it, beyond that a veil that hides no path. */
+function plateMeshes(p: Plate, solidWidth: number): Mesh[] {
   const [along, across] = [vector(p.along), vector(p.across)];
-  mesh.quaternion.setFromRotationMatrix(new Matrix4().makeBasis(along, across, along.clone().cross(across)));
-  mesh.position.copy(vector(p.edge)).addScaledVector(along, p.length / 2);
-  return mesh;
+  const basis = new Matrix4().makeBasis(along, across, along.clone().cross(across));
+  const look = { color: 0x9fb0c3, metalness: 0.6, roughness: 0.4 };
+  return [
+    { width: Math.min(p.width, solidWidth), material: new MeshStandardMaterial(look) },
+    { width: p.width, material: new MeshStandardMaterial({ ...look, transparent: true, opacity: 0.13, depthWrite: false }) },
+  ].map(({ width, material }) => {
+    const mesh = new Mesh(new BoxGeometry(p.length, width, p.thickness), material);
+    mesh.quaternion.setFromRotationMatrix(basis);
+    mesh.position.copy(vector(p.edge)).addScaledVector(along, p.length / 2);
+    return mesh;
+  });
 }
 
 function pathLine(points: Vector3[], colour: string, dashed: boolean): Line {
@@ -94,15 +101,9 @@ export class SceneView {
     const replay = run.replay;
     if (!replay) return;
     if (!ghost) {
-      this.domain.set(vector(replay.domain[0]), vector(replay.domain[1]));
-      this.flight.copy(this.domain);
-      const size = this.domain.getSize(new Vector3());
-      const box = new LineSegments(new EdgesGeometry(new BoxGeometry(size.x, size.y, size.z)),
-        new LineBasicMaterial({ color: 0x5b6b80, transparent: true, opacity: 0.5 }));
-      this.domain.getCenter(box.position);
-      this.scene.add(box);
+      const size = this.addBox(replay);
       for (const plate of replay.plates) {
-        this.scene.add(plateMesh(plate));
+        this.scene.add(...plateMeshes(plate, size.y));
         this.flight.expandByPoint(vector(plate.edge).addScaledVector(vector(plate.along), plate.length));
       }
       for (const nozzle of replay.nozzles) this.scene.add(this.nozzleMesh(nozzle.position, nozzle.direction, nozzle.diameter));
@@ -121,11 +122,27 @@ export class SceneView {
       }));
       this.scene.add(mesh);
       this.bodies.push({ run, body, mesh });
+      if (replay.bodies.length > CROWD) return;
       const points = this.pathOf(run, body);
       if (points.length > 1) this.scene.add(pathLine(points, colour, false));
       const free = (replay.undisturbed[body] ?? []).map(vector);
       if (free.length > 1) this.scene.add(pathLine(free, colour, true));
     });
+  }
+
+  /** The box of the air with its edges, or that around all bodies; its size. */
+  private addBox(replay: Replay): Vector3 {
+    if (hasBox(replay)) this.domain.set(vector(replay.domain[0]), vector(replay.domain[1]));
+    else for (const frame of replay.frames) for (const pose of frame.poses) this.domain.expandByPoint(vector(pose.position));
+    this.flight.copy(this.domain);
+    const size = this.domain.getSize(new Vector3());
+    if (hasBox(replay)) {
+      const box = new LineSegments(new EdgesGeometry(new BoxGeometry(size.x, size.y, size.z)),
+        new LineBasicMaterial({ color: 0x5b6b80, transparent: true, opacity: 0.5 }));
+      this.domain.getCenter(box.position);
+      this.scene.add(box);
+    }
+    return size;
   }
 
   private pathOf(run: Run, body: number): Vector3[] {

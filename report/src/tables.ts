@@ -1,6 +1,6 @@
-import { bodiesOf, type Json, type JsonObject, type Run } from "./data";
+import { CROWD, bodiesOf, type Json, type JsonObject, type Run } from "./data";
 import { h } from "./dom";
-import { duration, fixed, short, labelOf, thousands, words } from "./format";
+import { bytes, duration, fixed, short, labelOf, thousands, words } from "./format";
 
 const isNumber = (v: Json | undefined): v is number => typeof v === "number";
 
@@ -14,6 +14,12 @@ interface Fact {
   pointer: string;
 }
 
+/** Impulse that would have carried the body's centre just over the plate's edge, N s. */
+function neededImpulse(body: JsonObject): number | undefined {
+  const [impulse, margin, mass] = [body["impulse_z_N_s"], body["velocity_margin_z_m_s"], body["mass_kg"]];
+  return isNumber(impulse) && isNumber(margin) && isNumber(mass) ? impulse - mass * margin : undefined;
+}
+
 function factsOfBody(body: JsonObject, pointer: string): Fact[] {
   const facts: Fact[] = [];
   const add = (key: string, label: string, unit: string, text: (v: number) => string): void => {
@@ -24,14 +30,35 @@ function factsOfBody(body: JsonObject, pointer: string): Fact[] {
   add("clearance_at_splitter_m", "over the plate's edge", "mm", (v) => signed(v * 1e3, 1));
   add("velocity_margin_z_m_s", "margin in vertical velocity", "m/s", (v) => signed(v, 2));
   add("velocity_change_z_m_s", "vertical velocity gained", "m/s", (v) => signed(v, 2));
-  add("impulse_z_N_s", "vertical impulse", "mN\u00b7s", (v) => fixed(v * 1e3, 2));
+  const needed = neededImpulse(body);
+  add("impulse_z_N_s", needed === undefined ? "vertical impulse" : `vertical impulse of the air; ${fixed(needed * 1e3, 2)} just clears the edge`,
+    "mN\u00b7s", (v) => fixed(v * 1e3, 2));
   add("drag_coefficient", "drag coefficient", "", (v) => fixed(v, 3));
   add("mass_kg", "mass", "g", (v) => fixed(v * 1e3, 2));
   return facts;
 }
 
-/** One card a body: its outcome and the numbers behind it. */
+/** Every body's outcome and numbers, without columns that say the same nothing of all. */
+function crowdTable(runs: Run[]): HTMLElement {
+  const bodies = runs.flatMap((run, r) => bodiesOf(run).map((body, b) => ({ run, r, body, facts: factsOfBody(body, `/bodies/${b}`) })));
+  const labels = [...new Set(bodies.flatMap(({ facts }) => facts.filter((f) => Number(f.text) !== 0).map((f) => f.label)))];
+  const judged = bodies.some(({ body }) => typeof body["outcome"] === "string");
+  const rows = bodies.map(({ run, r, body, facts }) => [
+    String(body["name"]) + (runs.length > 1 ? `, ${run.name}` : ""),
+    ...(judged ? [String(body["outcome"] ?? "\u2013")] : []),
+    ...labels.map((label) => {
+      const f = facts.find((fact) => fact.label === label);
+      return h("span", f ? { "data-run": r, "data-pointer": f.pointer } : {}, f ? `${f.text} ${f.unit}` : "\u2013");
+    }),
+  ]);
+  const heads = ["Body", ...(judged ? ["Outcome"] : []), ...labels];
+  const from = heads.length - labels.length;
+  return h("details", {}, h("summary", {}, `All ${bodies.length} bodies`), table(heads, rows, labels.map((_, n) => from + n)));
+}
+
+/** One card a body, or one table of a crowd: its outcome and the numbers behind it. */
 export function bodyCards(runs: Run[]): HTMLElement | null {
+  if (runs.reduce((count, run) => count + bodiesOf(run).length, 0) > CROWD) return crowdTable(runs);
   const cards = h("div", { class: "cards" });
   runs.forEach((run, r) => bodiesOf(run).forEach((body, b) => {
     const outcome = body["outcome"];
@@ -79,7 +106,7 @@ export function costTable(runs: Run[]): HTMLElement | null {
   const rows = [
     ...figures,
     ...others.map((key): [string, string, (v: number) => string] => [key, labelOf(key), (v) => (isNumber(v) ? short(v, 4) : String(v))]),
-  ].filter(([key]) => runs.some((run) => run.result?.[key] !== undefined))
+  ].filter(([key]) => runs.some((run) => run.result?.[key] !== undefined && (run.result["cells"] !== 0 || run.result[key] !== 0)))
     .map(([key, label, text]) => [label, ...runs.map((run, r) => {
       const value = run.result?.[key];
       return h("span", { "data-run": r, "data-pointer": `/${key}` }, value === undefined || value === null ? "\u2013" : text(value as number));
@@ -95,11 +122,20 @@ function numbersText(value: Json | undefined): string {
   return "\u2013";
 }
 
+/** Keys of the ledger that do not speak for themselves. */
+const LEDGER_LABELS: { [key: string]: string } = {
+  leak_m_s: "Leak into solids [m/s]",
+  bodies_energy_J: "Bodies: energy less the work done on them [J]",
+  bodies_energy_scale_J: "Bodies: greatest energy turned over [J]",
+  dissipated_J: "Bodies: dissipated [J]",
+  kinetic_over_dissipated: "Bodies: kinetic energy over dissipated",
+};
+
 /** Conservation: how well the books close. */
 export function ledgerTable(runs: Run[]): HTMLElement | null {
   const keys = [...new Set(runs.flatMap((run) => Object.keys((run.result?.["ledger"] ?? {}) as JsonObject)))];
   if (keys.length === 0) return null;
-  const rows = keys.map((key) => [labelOf(key.replace(/_relative_residual$/, ", relative residual")), ...runs.map((run, r) => {
+  const rows = keys.map((key) => [LEDGER_LABELS[key] ?? labelOf(key.replace(/_relative_residual$/, ", relative residual")), ...runs.map((run, r) => {
     const value = ((run.result?.["ledger"] ?? {}) as JsonObject)[key];
     return h("span", { "data-run": r, "data-pointer": `/ledger/${key}` }, numbersText(value));
   })]);
@@ -152,12 +188,17 @@ function leaves(value: Json, path: string): [path: string, value: Json][] {
   return Object.entries(value).flatMap(([key, child]) => leaves(child as Json, `${path}/${key}`));
 }
 
+function provenanceText(key: string, value: Json | undefined): string {
+  if (isNumber(value) && key.endsWith("_bytes")) return bytes(value);
+  return String(value ?? "\u2013").replace(/^(\d{4}-\d\d-\d\d)T([\d:]+)Z$/, "$1 $2 UTC");
+}
+
 /** Where the run comes from. */
 export function provenanceTable(runs: Run[]): HTMLElement {
   const all = runs.map((run) => new Map(leaves(run.manifest as Json, "")));
   const keys = [...new Set(all.flatMap((m) => [...m.keys()]))];
   return table(["Provenance", ...runs.map((run) => run.name)], keys.map((key) =>
-    [words(key.slice(1).replace(/\//g, ", ")), ...all.map((m) => h("span", { class: "long" }, String(m.get(key) ?? "\u2013")))]));
+    [words(key.slice(1).replace(/\//g, ", ").replace(/_bytes$/, "")), ...all.map((m) => h("span", { class: "long" }, provenanceText(key, m.get(key))))]));
 }
 
 /** Every number of result.json, in full. */

@@ -11,7 +11,6 @@ namespace ejecta {
 namespace {
 
 constexpr double kPixels = 24000.0, kPixelsAbove = 8000.0;  ///< of the rasters
-constexpr double kPlateWidth = 0.08;                        ///< m, as drawn
 constexpr double kChordShare = 0.02;  ///< of a body's radius: how far its triangles may lie from its surface
 
 /// The grid begins at a plane of symmetry through the origin.
@@ -75,8 +74,8 @@ output::ReplayHeader replay_header(const Case& c, const CoupledModel& model) {
     h.bodies.push_back(
         output::make_body_surface(b.name, b.shape.surface(kChordShare * b.shape.bounding_radius())));
   if (model.splitter())
-    h.plates.push_back({"splitter", model.splitter()->edge(), Vec3(1, 0, 0), Vec3(0, 1, 0), c.splitter.length,
-                        kPlateWidth, c.splitter.thickness});
+    h.plates.push_back({"dividing plate", model.splitter()->edge(), Vec3(1, 0, 0), Vec3(0, 1, 0),
+                        c.splitter.length, Splitter::kWidth, c.splitter.thickness});
   if (model.flow() && has_jet(c)) {
     h.nozzles.push_back({c.jet.nozzle, Vec3(0, 0, 1), c.valve.orifice_diameter});
     h.valve_open.push_back({c.valve.opens_at, c.valve.opens_at + c.valve.duration});

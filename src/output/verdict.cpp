@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace ejecta::output {
@@ -28,6 +30,24 @@ std::string of_body(const ordered_json& body) {
                         : fmt::format(", {:.2f} m/s of vertical velocity short of clearing it", -margin);
   }
   return text;
+}
+
+/// "300 bodies followed for 3000 ms; at the end the fastest moves at 0.02 m/s"
+std::string of_bodies_alone(const ordered_json& result) {
+  const ordered_json& bodies = result["bodies"];
+  double fastest = 0.0;
+  for (const ordered_json& body : bodies) {
+    const auto v = body["final_velocity_m_s"].get<std::array<double, 3>>();
+    fastest = std::max(fastest, std::hypot(v[0], v[1], v[2]));
+  }
+  const std::string names =
+      bodies.size() == 1 ? bodies[0].value("name", "The body") : fmt::format("{} bodies", bodies.size());
+  const std::string end =
+      fastest < 1e-3 ? "at rest at the end (below 1 mm/s)"
+                     : fmt::format("{} {:.3g} m/s at the end",
+                                   bodies.size() == 1 ? "moving at" : "the fastest moving at", fastest);
+  return fmt::format("{} followed for {:.4g} ms, {}.", names, 1e3 * result["simulated_time_s"].get<double>(),
+                     end);
 }
 
 }  // namespace
@@ -61,6 +81,9 @@ std::string verdict_sentence(const ordered_json& result) {
         at["mach"].get<double>(), 1e-3 * at["total_gauge_Pa"].get<double>(),
         1e3 * at["height_m"].get<double>());
   }
+  if (has_number(result, "simulated_time_s") && result.contains("bodies") && !result["bodies"].empty() &&
+      result["bodies"][0].contains("final_velocity_m_s"))
+    return of_bodies_alone(result);
   if (has_number(result, "simulated_time_s"))
     return fmt::format("Computed {:.4g} ms.", 1e3 * result["simulated_time_s"].get<double>());
   return "Computed.";

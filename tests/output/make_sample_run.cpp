@@ -97,7 +97,7 @@ void write_sample(const std::filesystem::path& directory, double push, int cells
                     {"z = 75 mm", 2, 0.075, {-0.06, -0.03}, {0.06, 0.03}, {240, 120}, false, false}};
   header.bodies = surfaces;
   if (!jet_only)
-    header.plates = {{"splitter", Vec3(0.25, 0, 0.072), Vec3(1, 0, 0), Vec3(0, 1, 0), 0.1, 0.1, 2e-3}};
+    header.plates = {{"dividing plate", Vec3(0.25, 0, 0.072), Vec3(1, 0, 0), Vec3(0, 1, 0), 0.1, 0.1, 2e-3}};
   header.nozzles = {{Vec3(0, 0, 0), Vec3(0, 0, 1), 1.8e-3}};
   header.valve_open = {{kOpen, kClose}};
   for (const Lump& lump : lumps) {
