@@ -45,9 +45,9 @@ std::string flow_part(const Case& c, double bandwidth) {
                       1e9 * f.largest_volume);
   if (f.fastest > 0.0 || c.run.time_step) {
     text += fmt::format(
-        "  steps        about {:.0f} of {} while the fluid moves, up to {} ({:.3g} m/s at Courant {})\n",
-        two_digits(static_cast<double>(f.steps)), time_words(f.time_step), time_words(f.blows_until),
-        f.fastest, c.run.courant);
+        "  steps        about {:.0f} with the fluid, {} and longer ({:.3g} m/s at Courant {}), up to {}\n",
+        two_digits(static_cast<double>(f.steps)), time_words(f.time_step), f.fastest, c.run.courant,
+        time_words(f.air_until));
     text += fmt::format("  time         {} on this machine, longer if the fluid gets faster\n",
                         duration_words(expected_seconds(c, f, bandwidth)));
   } else {

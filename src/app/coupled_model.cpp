@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "app/air_limits.hpp"
 #include "app/jet_source.hpp"
 #include "base/error.hpp"
 #include "base/state_reader.hpp"
@@ -25,8 +26,6 @@ Grid grid_of(const Case& c) {
 
 /// Longest step without air, s: positions in histories and reports stay smooth.
 constexpr double kFlightStep = 1e-4;
-/// Share of its greatest kinetic energy below which the air counts as dead once the valve is closed.
-constexpr double kDeadAir = 1e-3;
 
 }  // namespace
 

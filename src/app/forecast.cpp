@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <memory>
 #include <optional>
 
+#include "app/air_forecast.hpp"
 #include "app/jet_source.hpp"
 #include "base/parallel.hpp"
 #include "case/expression.hpp"
@@ -57,22 +57,6 @@ double fastest_state(const Case& c, const StateSpec& s, const Vec3& at) {
   return fastest + (c.flow.solver == FlowSolver::compressible ? sound_speed(c, s, at) : 0.0);
 }
 
-/// The jet, or for one that would have to be computed first, the self-similar one of the same valve.
-std::unique_ptr<JetSource> jet_of(Case c) {
-  if (c.jet.kind == JetKind::computed) c.jet.kind = JetKind::self_similar;
-  return make_jet_source(c);
-}
-
-/// Highest speed on the axis where the jet enters the box, m/s.
-double jet_speed(const Case& c) {
-  const std::unique_ptr<JetSource> jet = jet_of(c);
-  constexpr int samples = 256;
-  double fastest = 0.0;
-  for (int n = 0; n <= samples; ++n)
-    fastest = std::max(fastest, jet->fastest(c.run.end_time * n / samples, c.grid.axis[2].points.front()));
-  return fastest;
-}
-
 /// Gas expanded into a vacuum, sqrt(2 cp T0), m/s: no steady jet from a reservoir of temperature T0 is
 /// faster.
 double limiting_speed(const Gas& gas, double total_temperature) {
@@ -105,22 +89,21 @@ double fastest_speed(const Case& c, const Grid& grid) {
   return fastest;
 }
 
-/// A run that waits for its verdict computes the air until the last pulse has left the box.
-double blows_until(const Case& c) {
-  if (!has_flow(c) || !has_jet(c) || c.run.until != RunUntil::verdict) return c.run.end_time;
-  constexpr double leaves = 5e-3;  // s, several transits of the box
-  return std::min(c.run.end_time, jet_of(c)->dead_from() + leaves);
+/// Numbers a cell holds, and numbers it moves through memory in a step. Measured: boxes of 0.6 and 4.6
+/// million cells hold 26 (laminar) or 40 numbers a cell and its ghosts, of compressible gas 62; the paper's
+/// box of 571,200 cells with k-epsilon takes 50 ms a step on a core that moves 22 GB/s.
+struct CellCost {
+  int held;
+  double moved;
+};
+
+CellCost cell_cost(const Case& c) {
+  const bool laminar = c.flow.turbulence == TurbulenceModel::laminar;
+  if (is_compressible(c)) return {62, laminar ? 540.0 : 660.0};
+  return laminar ? CellCost{26, 360.0} : CellCost{40, 480.0};
 }
 
-// Fields held, counted in the solvers; and how often a step moves each of them through memory, measured: the
-// paper's box of 571,200 cells with k-epsilon takes 50 ms a step on a core that moves 22 GB/s.
-constexpr int fields_incompressible = 24, fields_compressible = 36, fields_turbulence = 8;
-constexpr double passes_per_field = 15.0;
-
-int held_fields(const Case& c) {
-  return (is_compressible(c) ? fields_compressible : fields_incompressible) +
-         (c.flow.turbulence == TurbulenceModel::laminar ? 0 : fields_turbulence);
-}
+constexpr double state_fields = 10.0;  ///< in a checkpoint: velocity, face velocities, pressure, turbulence
 
 double count_of(double interval, double end) {
   return interval > 0.0 ? std::floor(end / interval) + 1.0 : 0.0;
@@ -131,8 +114,8 @@ double disk_space(const Case& c, const Grid& grid, const Forecast& f) {
                all = c.flow.turbulence == TurbulenceModel::laminar ? 4.0 : 7.0;
   // Numbers a cell: a vector stands for two more.
   const double numbers = c.output.fields.empty() ? all : static_cast<double>(c.output.fields.size()) + 2.0;
-  const double slices = count_of(c.output.slices_interval, f.blows_until);
-  double bytes = count_of(c.output.fields_interval, f.blows_until) * cells * numbers * sizeof(float);
+  const double slices = count_of(c.output.slices_interval, f.air_until);
+  double bytes = count_of(c.output.fields_interval, f.air_until) * cells * numbers * sizeof(float);
   for (const SliceSpec& s : c.slices) bytes += slices * cells / grid.n(s.axis) * numbers * sizeof(float);
   constexpr double row = 400.0, cell_of_row = 20.0;  // text
   for (const LineSpec& l : c.lines) bytes += slices * l.points * (numbers + 3.0) * cell_of_row;
@@ -144,7 +127,7 @@ double disk_space(const Case& c, const Grid& grid, const Forecast& f) {
   if (c.output.report) bytes += page + 2.0 * frame * (c.output.slices_interval > 0.0 ? slices : 200.0);
   const bool checkpoints =
       c.checkpoint.every_steps > 0 || c.checkpoint.every_time > 0.0 || c.checkpoint.every_wall_time > 0.0;
-  return bytes + (checkpoints ? 2.0 * cells * held_fields(c) * sizeof(Real) : 0.0);  // the last two are kept
+  return bytes + (checkpoints ? 2.0 * cells * state_fields * sizeof(Real) : 0.0);  // the last two are kept
 }
 
 }  // namespace
@@ -152,7 +135,7 @@ double disk_space(const Case& c, const Grid& grid, const Forecast& f) {
 Forecast forecast(const Case& c) {
   Forecast f;
   f.time_step = c.run.time_step.value_or(c.run.time_step_max);
-  f.blows_until = blows_until(c);
+  f.air_until = air_until(c);
   if (!has_flow(c)) return f;
   const Grid grid = grid_of(c);
   f.cells = grid.cells();
@@ -167,17 +150,20 @@ Forecast forecast(const Case& c) {
   f.fastest = fastest_speed(c, grid);
   if (!c.run.time_step && f.fastest > 0.0)
     f.time_step = std::min(c.run.time_step_max, c.run.courant * f.smallest_cell / f.fastest);
-  f.steps =
-      f.time_step < f.blows_until ? static_cast<std::int64_t>(std::ceil(f.blows_until / f.time_step)) : 1;
-  f.memory = 20e6 + static_cast<double>(f.cells) * held_fields(c) * sizeof(Real);
+  f.steps = c.run.time_step || !has_jet(c) || is_compressible(c)
+                ? static_cast<std::int64_t>(std::max(1.0, std::ceil(f.air_until / f.time_step)))
+                : jet_steps(c, grid, f.air_until);
+  double held = 1.0;  // cells with two layers of ghosts
+  for (int d = 0; d < 3; ++d) held *= grid.n(d) + 4;
+  f.memory = 26e6 + held * cell_cost(c).held * sizeof(Real);
   f.disk = disk_space(c, grid, f);
   return f;
 }
 
 double expected_seconds(const Case& c, const Forecast& f, double bandwidth) {
   const double corrections = c.flow.solver == FlowSolver::incompressible ? 0.5 * c.flow.corrections : 1.0;
-  return static_cast<double>(f.steps) * static_cast<double>(f.cells) * held_fields(c) * passes_per_field *
-         corrections * sizeof(Real) / bandwidth;
+  return static_cast<double>(f.steps) * static_cast<double>(f.cells) * cell_cost(c).moved * corrections *
+         sizeof(Real) / bandwidth;
 }
 
 double measured_bandwidth() {

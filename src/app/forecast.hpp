@@ -14,8 +14,8 @@ struct Forecast {
   double smallest_cell = 0.0, largest_cell = 0.0;      ///< m, edges
   double smallest_volume = 0.0, largest_volume = 0.0;  ///< m3
   double fastest = 0.0;                                ///< m/s, the speed that limits the step
-  double blows_until = 0.0;  ///< s, end of the jet or of the run: bodies fly on without flow
-  double time_step = 0.0;    ///< s
+  double air_until = 0.0;                              ///< s: bodies fly on without flow
+  double time_step = 0.0;                              ///< s, the shortest
   std::int64_t steps = 0;
   double memory = 0.0;  ///< bytes
   double disk = 0.0;    ///< bytes

@@ -4,8 +4,9 @@
 
 #include <cmath>
 
+#include "app/air_limits.hpp"
 #include "app/grid_sampler.hpp"
-#include "app/jet_source.hpp"
+#include "app/incompressible_states.hpp"
 #include "app/round_jet.hpp"
 #include "base/error.hpp"
 #include "base/state_reader.hpp"
@@ -15,44 +16,13 @@
 namespace ejecta {
 namespace {
 
-/// Compiled state of a boundary, region or exact solution.
-struct StateFormula {
-  std::array<Expression, 3> velocity;
-  bool has_velocity = false, varies = false;
-  double k = 0, second = 0;
-
-  StateFormula(const StateSpec& s, bool omega, double ambient_k, double ambient_second) {
-    if (s.velocity)
-      for (std::size_t d = 0; d < 3; ++d) {
-        velocity[d] = Expression((*s.velocity)[d]);
-        varies = varies || velocity[d].uses_time();
-      }
-    has_velocity = s.velocity.has_value();
-    k = s.k.value_or(ambient_k);
-    second = ambient_second;
-    if (s.epsilon) second = omega ? *s.epsilon / (0.09 * k) : *s.epsilon;
-  }
-  Vec3 at(const Vec3& x, double t) const {
-    return {velocity[0](x.x(), x.y(), x.z(), t), velocity[1](x.x(), x.y(), x.z(), t),
-            velocity[2](x.x(), x.y(), x.z(), t)};
-  }
-};
-
 class IncompressibleModel : public FlowModel {
  public:
   IncompressibleModel(const Case& c, const Grid& grid)
-      : case_(c),
-        grid_(grid),
-        density_(c.fluid.density),
-        nu_(c.fluid.viscosity / c.fluid.density),
-        omega_(c.flow.turbulence == TurbulenceModel::k_omega_sst),
-        jet_(make_jet_source(c)) {
-    // Still air: a trace of turbulence whose eddy viscosity equals the molecular one.
-    ambient_k_ = 1e-4;
-    ambient_second_ = omega_ ? ambient_k_ / nu_ : 0.09 * ambient_k_ * ambient_k_ / nu_;
+      : case_(c), grid_(grid), still_(c), jet_(make_jet_source(c)) {
     IncompressibleSetup setup;
-    setup.density = density_;
-    setup.viscosity = nu_;
+    setup.density = still_.density;
+    setup.viscosity = still_.nu;
     setup.corrections = c.flow.corrections;
     setup.acceleration = c.flow.body_force;
     setup.round_jet_correction = c.flow.round_jet_correction;
@@ -65,7 +35,8 @@ class IncompressibleModel : public FlowModel {
         return Vec3(f[0](x.x(), x.y(), x.z(), t), f[1](x.x(), x.y(), x.z(), t), f[2](x.x(), x.y(), x.z(), t));
       };
     std::array<Boundary, 6> faces;
-    for (int f = 0; f < 6; ++f) faces[static_cast<std::size_t>(f)] = make_boundary(f);
+    for (int f = 0; f < 6; ++f)
+      faces[static_cast<std::size_t>(f)] = make_boundary(c, grid, still_, jet_.get(), f);
     flow_ = std::make_unique<Incompressible>(grid, faces, setup);
     initialise();
   }
@@ -73,8 +44,8 @@ class IncompressibleModel : public FlowModel {
   double stable_dt(double time) override {
     double dt = std::min(flow_->stable_dt(case_.run.courant), case_.run.time_step_max);
     if (!jet_) return dt;
-    // A jet that starts must not outrun the step that lets it in, nor open and close unseen within one.
-    dt = std::min(dt, 0.01 * case_.valve.duration);
+    dt = std::min(dt, kStepOfPulse * case_.valve.duration);
+    // A jet that starts must not outrun the step that lets it in.
     const double h = grid_.axis(2).width.front(), z = grid_.axis(2).face.front();
     for (int n = 0; n < 60; ++n) {
       const double limit = case_.run.courant * h / std::max(jet_->fastest(time + dt, z), 1e-30);
@@ -88,17 +59,17 @@ class IncompressibleModel : public FlowModel {
     flow_->advance(time, dt, solids);
     last_time_ = time + dt;
   }
-  double density() const override { return density_; }
+  double density() const override { return still_.density; }
   std::array<ConstFieldView, 3> velocity() const override { return flow_->velocity(); }
 
   std::vector<output::CellField> fields() override {
     const auto u = flow_->velocity();
     std::vector<output::CellField> all{
         output::vector_field("velocity", u[0], u[1], u[2]),
-        output::scalar_field("pressure", flow_->pressure_field().view(), density_)};
+        output::scalar_field("pressure", flow_->pressure_field().view(), still_.density)};
     if (const TwoEquation* t = flow_->turbulence()) {
       all.push_back(output::scalar_field("k", t->k().view()));
-      all.push_back(output::scalar_field(omega_ ? "omega" : "epsilon", t->second().view()));
+      all.push_back(output::scalar_field(still_.omega ? "omega" : "epsilon", t->second().view()));
       all.push_back(output::scalar_field("eddy_viscosity", t->eddy_viscosity()));
     }
     return all;
@@ -116,9 +87,9 @@ class IncompressibleModel : public FlowModel {
     const GridSampler at(grid_, x);
     const auto u = flow_->velocity();
     for (std::size_t d = 0; d < 3; ++d) values[d] = at(u[d]);
-    values[3] = density_ * at(flow_->pressure_field().view());
-    values[4] =
-        values[3] + 0.5 * density_ * (values[0] * values[0] + values[1] * values[1] + values[2] * values[2]);
+    values[3] = still_.density * at(flow_->pressure_field().view());
+    values[4] = values[3] + 0.5 * still_.density *
+                                (values[0] * values[0] + values[1] * values[1] + values[2] * values[2]);
     if (const TwoEquation* t = flow_->turbulence()) {
       values[5] = at(t->k().view());
       values[6] = at(t->eddy_viscosity());
@@ -152,7 +123,7 @@ class IncompressibleModel : public FlowModel {
       const double exit = jet_->fastest(last_time_, grid_.axis(2).face.front());
       const TwoEquation* t = flow_->turbulence();
       if (const auto jet = analyse_round_jet(grid_, flow_->velocity()[2], flow_->pressure_field().view(),
-                                             t ? t->eddy_viscosity() : ConstFieldView{}, nu_, d, exit,
+                                             t ? t->eddy_viscosity() : ConstFieldView{}, still_.nu, d, exit,
                                              z0 + 30.0 * d, z0 + 0.8 * (grid_.axis(2).face.back() - z0)))
         result["round_jet"] = {{"decay", jet->decay},
                                {"spreading", jet->spreading},
@@ -196,106 +167,14 @@ class IncompressibleModel : public FlowModel {
   }
 
  private:
-  Boundary make_boundary(int face) const {
-    const BoundarySpec& spec = case_.boundary[static_cast<std::size_t>(face)];
-    const StateFormula formula(spec.state, omega_, ambient_k_, ambient_second_);
-    Boundary b;
-    const auto constant_turbulence = [](BoundaryState s, double k, double second) {
-      s.k = static_cast<Real>(k);
-      s.second = static_cast<Real>(second);
-      return s;
-    };
-    const bool axis = grid_.axisymmetric() && face == 0 && grid_.lower().x() == 0.0;
-    switch (axis ? BoundaryType::symmetry : spec.type) {
-      case BoundaryType::slip:
-      case BoundaryType::symmetry:
-        b.kind = BoundaryKind::mirror;
-        return b;
-      case BoundaryType::periodic:
-        b.kind = BoundaryKind::periodic;
-        return b;
-      case BoundaryType::pressure_outlet:
-      case BoundaryType::wave_transmissive:
-      case BoundaryType::free_stream:
-      case BoundaryType::total_pressure: {
-        b.kind = BoundaryKind::open;
-        b.total_pressure = spec.type == BoundaryType::total_pressure;
-        const double ambient = case_.environment.pressure;
-        if (b.total_pressure && spec.total_pressure > 0.0)
-          b.pressure = (spec.total_pressure - ambient) / density_;
-        if (spec.state.pressure) b.pressure = Expression(*spec.state.pressure)(0, 0, 0, 0) / density_;
-        b.state = [=](const Vec3&, double) { return constant_turbulence({}, formula.k, formula.second); };
-        if (!spec.patches.empty())
-          throw InputError(fmt::format(
-              "boundary.{}: patches of an incompressible flow need a face of type wall, velocity or jet",
-              face_name(face)));
-        return b;
-      }
-      case BoundaryType::wall:
-      case BoundaryType::moving_wall:
-        b.kind = spec.patches.empty() ? BoundaryKind::wall : BoundaryKind::inflow;
-        break;
-      case BoundaryType::velocity:
-      case BoundaryType::jet:
-        b.kind = BoundaryKind::inflow;
-        break;
-    }
-    if (spec.type == BoundaryType::jet && face != 4)
-      throw InputError("a jet blows along +z: it enters through boundary.z_min");
-    b.varies = formula.varies;
-    struct Piece {
-      Vec3 centre;
-      double radius;
-      bool jet;
-      StateFormula formula;
-    };
-    std::vector<Piece> pieces;
-    for (const PatchSpec& p : spec.patches) {
-      pieces.push_back({p.centre, p.radius, p.type == BoundaryType::jet,
-                        StateFormula(p.state, omega_, ambient_k_, ambient_second_)});
-      b.varies = b.varies || pieces.back().jet || pieces.back().formula.varies;
-    }
-    const bool whole_jet = spec.type == BoundaryType::jet;
-    b.varies = b.varies || whole_jet;
-    b.state = [=, this](Vec3 x, double t) {
-      if (grid_.axisymmetric()) x.y() = case_.jet.nozzle.y();  // all around is in the one cell
-      bool jet = whole_jet;
-      const StateFormula* f = &formula;
-      for (const Piece& p : pieces)
-        if ((x - p.centre).norm() <= p.radius) jet = p.jet, f = &p.formula;
-      BoundaryState s;
-      if (jet) return jet_state(x, t);
-      const Vec3 v = f->at(x, t);
-      for (int d = 0; d < 3; ++d) s.velocity[static_cast<std::size_t>(d)] = static_cast<Real>(v[d]);
-      return constant_turbulence(s, f->k, f->second);
-    };
-    return b;
-  }
-
-  BoundaryState jet_state(const Vec3& x, double t) const {
-    const auto half = [&](int d) {
-      const Axis& a = grid_.axis(d);
-      return 0.5 * a.width[static_cast<std::size_t>(a.cell_at(x[d]))];
-    };
-    const JetState jet = jet_->at(x, half(0), grid_.axisymmetric() ? 0.0 : half(1), t);
-    BoundaryState s;
-    for (int d = 0; d < 3; ++d) s.velocity[static_cast<std::size_t>(d)] = static_cast<Real>(jet.velocity[d]);
-    const double k = std::max(jet.k, ambient_k_);
-    const double epsilon = jet.k > ambient_k_ ? jet.epsilon : 0.09 * k * k / nu_;
-    s.k = static_cast<Real>(k);
-    s.second = static_cast<Real>(omega_ ? epsilon / (0.09 * k) : epsilon);
-    return s;
-  }
-
   void initialise() {
     std::vector<std::pair<const InitialSpec*, StateFormula>> regions;
-    for (const InitialSpec& i : case_.initial)
-      regions.emplace_back(&i, StateFormula(i.state, omega_, ambient_k_, ambient_second_));
+    for (const InitialSpec& i : case_.initial) regions.emplace_back(&i, StateFormula(i.state, still_));
     const auto inside = [](const InitialSpec& i, const Vec3& x) {
       return !i.box || ((x - (*i.box)[0]).minCoeff() >= 0.0 && ((*i.box)[1] - x).minCoeff() >= 0.0);
     };
     if (TwoEquation* t = flow_->turbulence()) {
-      t->initialise(ambient_k_, ambient_second_);
+      t->initialise(still_.k, still_.second);
       for (const auto& [spec, formula] : regions)
         for (int k = 0; k < grid_.nz(); ++k)
           for (int j = 0; j < grid_.ny(); ++j)
@@ -314,23 +193,16 @@ class IncompressibleModel : public FlowModel {
     const auto pressure = [&](const Vec3& x) {
       double p = 0.0;
       for (const auto& [spec, formula] : pressures)
-        if (inside(*spec, x)) p = formula(x.x(), x.y(), x.z(), 0.0) / density_;
+        if (inside(*spec, x)) p = formula(x.x(), x.y(), x.z(), 0.0) / still_.density;
       return p;
     };
     flow_->initialise(velocity, pressure, 0.0);
     momentum_at_start_ = flow_->momentum();
   }
 
-  static const char* face_name(int face) {
-    static constexpr const char* names[] = {"x_min", "x_max", "y_min", "y_max", "z_min", "z_max"};
-    return names[face];
-  }
-
   const Case& case_;
   const Grid& grid_;
-  double density_, nu_;
-  bool omega_;
-  double ambient_k_ = 0, ambient_second_ = 0;
+  StillAir still_;
   std::unique_ptr<JetSource> jet_;
   std::unique_ptr<Incompressible> flow_;
   Vec3 momentum_at_start_{0, 0, 0};

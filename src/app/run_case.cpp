@@ -5,10 +5,10 @@
 #include <iostream>
 #include <memory>
 
+#include "app/air_forecast.hpp"
 #include "app/case_changes.hpp"
 #include "app/coupled_model.hpp"
 #include "app/exit_code.hpp"
-#include "app/forecast.hpp"
 #include "app/run_outputs.hpp"
 #include "app/run_result.hpp"
 #include "app/signals.hpp"
@@ -62,7 +62,7 @@ class Run {
     outputs_->add_events(clock_, c.run.end_time);
     clock_.add_events_every(c.checkpoint.every_time, 0.0, c.run.end_time);
     // A verdict comes in free flight, which costs nothing: what is left to wait for is the air.
-    busy_until_ = std::min(c.run.end_time, forecast(c).blows_until);
+    busy_until_ = std::min(c.run.end_time, air_until(c));
     if (resumed) restore();
   }
 

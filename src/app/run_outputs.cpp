@@ -74,19 +74,13 @@ RunOutputs::RunOutputs(const Case& c, const CoupledModel& model, const output::R
     for (const Body& b : model.particles().bodies())
       bodies_.push_back(open_history(directory, "body-" + b.name, provenance, body_columns(), resume));
   if (model.flow()) {
-    std::vector<Column> columns;
-    for (const auto& [name, unit] : model.flow()->quantities()) columns.push_back({name, unit});
-    columns.push_back({"transducer", "Pa"});
-    for (const ProbeSpec& spec : c.probes) {
-      Probe p{spec, std::vector<double>(columns.size() - 1),
-              {},   {},
-              0.0,  open_history(directory, "probe-" + spec.name, provenance, columns, resume)};
-      p.peak.assign(columns.size(), -1e300);
-      p.peak_time.assign(columns.size(), 0.0);
-      probes_.push_back(std::move(p));
-    }
-    columns.back() = {"position", "m"};
-    std::rotate(columns.begin(), columns.end() - 1, columns.end());
+    const auto quantities = model.flow()->quantities();
+    for (const ProbeSpec& spec : c.probes)
+      probes_.emplace_back(
+          spec, quantities,
+          open_history(directory, "probe-" + spec.name, provenance, Probe::columns(quantities), resume));
+    std::vector<Column> columns{{"position", "m"}};
+    for (const auto& [name, unit] : quantities) columns.push_back({name, unit});
     if (c.output.slices_interval > 0.0)
       for (const LineSpec& spec : c.lines) {
         Line line{
@@ -143,30 +137,7 @@ void RunOutputs::observe(double time, std::int64_t) {
 void RunOutputs::update_probes(double time) {
   const double dt = time - last_probe_time_;
   last_probe_time_ = time;
-  if (!model_.flow()) return;
-  for (Probe& p : probes_) {
-    model_.flow()->sample(p.spec.position, p.values);
-    // What the instrument reads: the mean over its opening, delayed by its first-order response.
-    double seen = p.values[4];
-    if (p.spec.diameter > 0.0) {
-      std::vector<double> v(p.values.size());
-      double sum = seen, weight = 1.0;
-      for (int ring = 1; ring <= 2; ++ring)
-        for (int n = 0; n < 8; ++n) {
-          const double r = 0.25 * ring * p.spec.diameter * 0.9, angle = 0.785398163 * n;
-          model_.flow()->sample(p.spec.position + r * Vec3(std::cos(angle), std::sin(angle), 0), v);
-          sum += ring * v[4];
-          weight += ring;
-        }
-      seen = sum / weight;
-    }
-    const double share = p.spec.response_time > 0.0 ? 1.0 - std::exp(-dt / p.spec.response_time) : 1.0;
-    p.transducer += share * (seen - p.transducer);
-    for (std::size_t q = 0; q < p.peak.size(); ++q) {
-      const double value = q < p.values.size() ? p.values[q] : p.transducer;
-      if (value > p.peak[q]) p.peak[q] = value, p.peak_time[q] = time;
-    }
-  }
+  for (Probe& p : probes_) p.read(*model_.flow(), time, dt);
 }
 
 void RunOutputs::write_histories(double time) {
@@ -179,11 +150,7 @@ void RunOutputs::write_histories(double time) {
     for (std::size_t n = 0; n < 18; ++n) row[n] = columns[n / 3][static_cast<int>(n % 3)];
     bodies_[b]->add(time, row);
   }
-  for (Probe& p : probes_) {
-    p.values.push_back(p.transducer);
-    p.file->add(time, p.values);
-    p.values.pop_back();
-  }
+  for (Probe& p : probes_) p.write(time);
   if (energy_) {
     const DemEnergy e = model_.particles().energy();
     energy_->add(time, std::array{e.kinetic, e.potential, e.elastic, e.dissipated, e.work});
@@ -284,15 +251,7 @@ void RunOutputs::finish(double time) {
 void RunOutputs::report(nlohmann::ordered_json& result) const {
   if (!model_.flow()) return;
   const auto quantities = model_.flow()->quantities();
-  for (const Probe& p : probes_) {
-    auto& out = result["probes"][p.spec.name];
-    for (std::size_t q = 0; q < p.peak.size(); ++q) {
-      const std::string name = q < quantities.size() ? quantities[q].first : "transducer";
-      out[name] = q < p.values.size() ? p.values[q] : p.transducer;
-      out["peak_" + name] = p.peak[q];
-      out["peak_time_" + name] = p.peak_time[q];
-    }
-  }
+  for (const Probe& p : probes_) p.report(result, quantities);
   std::vector<double> values(quantities.size());
   for (const LineSpec& line : case_.lines) {
     auto& out = result["lines"][line.name];
@@ -306,10 +265,7 @@ void RunOutputs::report(nlohmann::ordered_json& result) const {
 
 std::vector<double> RunOutputs::state() const {
   std::vector<double> s{last_history_, last_fields_, last_slices_, last_replay_, last_probe_time_};
-  for (const Probe& p : probes_) {
-    s.push_back(p.transducer);
-    for (const auto* list : {&p.values, &p.peak, &p.peak_time}) s.insert(s.end(), list->begin(), list->end());
-  }
+  for (const Probe& p : probes_) p.save(s);
   return s;
 }
 
@@ -317,11 +273,7 @@ void RunOutputs::restore(const std::vector<double>& s) {
   StateReader in(s, "outputs");
   for (double* v : {&last_history_, &last_fields_, &last_slices_, &last_replay_, &last_probe_time_})
     *v = in.number();
-  for (Probe& p : probes_) {
-    p.transducer = in.number();
-    for (auto* list : {&p.values, &p.peak, &p.peak_time})
-      for (double& v : *list) v = in.number();
-  }
+  for (Probe& p : probes_) p.load(in);
   in.end();
 }
 

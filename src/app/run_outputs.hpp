@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "app/coupled_model.hpp"
+#include "app/probe.hpp"
 #include "output/checkpoint.hpp"
 #include "output/history.hpp"
 #include "output/pvd_series.hpp"
@@ -35,12 +36,6 @@ class RunOutputs {
   void restore(const std::vector<double>& state);
 
  private:
-  struct Probe {
-    ProbeSpec spec;
-    std::vector<double> values, peak, peak_time;
-    double transducer = 0.0;
-    std::unique_ptr<output::HistoryFile> file;
-  };
   struct Line {
     std::vector<Vec3> points;
     std::vector<double> position;  ///< m, from its first end

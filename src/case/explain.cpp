@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cctype>
+#include <iterator>
+#include <sstream>
 
 #include "base/error.hpp"
 #include "base/text.hpp"
@@ -68,20 +70,30 @@ std::string whole_key(const Section& s, const Key& key) {
   return text;
 }
 
-bool mentions(const Section& s, const Key& key, const std::string& word) {
-  if (lower(s.name + "." + key.name + " " + key.help + " " + key.source).find(word) != std::string::npos)
-    return true;
-  const auto* choice = std::get_if<Choice>(&key.slot);
-  return choice && std::any_of(choice->words->begin(), choice->words->end(), [&](const Word& w) {
-           return lower(w.name + " " + w.help).find(word) != std::string::npos;
-         });
+/// All that is said of a key, in lower case.
+std::string said_of(const Section& s, const Key& key) {
+  std::string text = s.name + "." + key.name + " " + key.help + " " + key.source;
+  if (const auto* choice = std::get_if<Choice>(&key.slot))
+    for (const Word& w : *choice->words) text += " " + w.name + " " + w.help;
+  return lower(text);
 }
 
-std::string search(const std::vector<Section>& sections, const std::string& word) {
+/// Some word of the text begins with `wanted`: "turb" is in "turbulence" and not in "undisturbed".
+bool mentions(const std::string& text, const std::string& wanted) {
+  for (std::size_t at = text.find(wanted); at != std::string::npos; at = text.find(wanted, at + 1))
+    if (at == 0 || !std::isalpha(static_cast<unsigned char>(text[at - 1]))) return true;
+  return false;
+}
+
+/// The keys of which every word of the topic is said.
+std::string search(const std::vector<Section>& sections, const std::string& topic) {
+  std::istringstream stream(lower(topic));
+  const std::vector<std::string> words{std::istream_iterator<std::string>(stream), {}};
   std::string text;
   for (const Section& s : sections)
     for (const Key& key : s.keys(0))
-      if (mentions(s, key, lower(word)))
+      if (const std::string said = said_of(s, key);
+          std::all_of(words.begin(), words.end(), [&](const std::string& w) { return mentions(said, w); }))
         text += fmt::format("  {:<34} {}\n", s.name + "." + key.name, key.help);
   return text;
 }

@@ -32,8 +32,12 @@ void write_all(int fd, const void* data, std::size_t bytes, const std::filesyste
 void throw_system_error(std::string_view what, const std::filesystem::path& path) {
   const int code = errno;
   std::string hint;
-  if (code == ENOSPC || code == EDQUOT) hint = " (free some space, then go on with --resume)";
+  if (code == ENOSPC || code == EDQUOT)
+    hint = " (free some space; --resume goes on from the last checkpoint)";
   if (code == EACCES || code == EROFS || code == EPERM) hint = " (choose another place with --out DIR)";
+  std::error_code unknown;
+  if (code == ENOENT && !std::filesystem::exists(path.parent_path(), unknown))
+    hint = " (its directory is gone: was it removed while the run was going?)";
   throw Error(fmt::format("{} {}: {}{}", what, path.string(), std::strerror(code), hint));
 }
 

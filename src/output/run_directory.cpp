@@ -78,6 +78,8 @@ RunDirectory RunDirectory::create(const fs::path& path, bool force) {
 
 RunDirectory RunDirectory::open(const fs::path& path) {
   std::error_code failed;
+  if (fs::is_regular_file(path, failed))
+    throw InputError(fmt::format("{} is a file; the directory of a run is needed", path.string()));
   if (!fs::is_directory(path, failed))
     throw InputError(fmt::format("there is no directory {}", path.string()));
   if (!fs::exists(path / "manifest.json", failed))

@@ -4,9 +4,9 @@
 #include <memory>
 
 #include "app/cli/commands.hpp"
+#include "app/cli/input_error.hpp"
 #include "app/exit_code.hpp"
 #include "app/forecast.hpp"
-#include "base/error.hpp"
 #include "case/load.hpp"
 
 namespace ejecta {
@@ -34,7 +34,7 @@ void add_check(CLI::App& app, Action& action) {
           const Case c = load_case(path, o->overrides, &warnings);
           fmt::print("{}\n", check_report(c, warnings, bandwidth));
         } catch (const InputError& e) {
-          fmt::print(stderr, "{}\n", e.what());
+          print_input_error(e);
           code = exit_bad_input;
         }
       }

@@ -7,8 +7,8 @@
 #include <string_view>
 
 #include "app/cli/commands.hpp"
+#include "app/cli/input_error.hpp"
 #include "app/exit_code.hpp"
-#include "base/error.hpp"
 #include "base/text.hpp"
 #include "output/build_info.hpp"
 
@@ -63,6 +63,12 @@ bool is_command(const CLI::App& app, const std::string& word) {
 
 }  // namespace
 
+void print_input_error(const InputError& e) {
+  // A list of the errors of a case says so itself, error by error.
+  const bool list = std::string_view(e.what()).find("error: ") != std::string_view::npos;
+  fmt::print(stderr, "{}{}\n", list ? "" : "error: ", e.what());
+}
+
 int run_command_line(int argc, const char* const* argv) {
   CLI::App app(
       "Ejecta predicts which particles an air-jet sorter ejects: it computes the pulsed air jet, the "
@@ -99,9 +105,7 @@ int run_command_line(int argc, const char* const* argv) {
   try {
     return flushed(action());
   } catch (const InputError& e) {
-    // A list of the errors of a case says so itself, error by error.
-    const bool list = std::string_view(e.what()).find("error: ") != std::string_view::npos;
-    fmt::print(stderr, "{}{}\n", list ? "" : "error: ", e.what());
+    print_input_error(e);
     return exit_bad_input;
   } catch (const DivergedError& e) {
     fmt::print(stderr, "error: {}\n", e.what());

@@ -1,0 +1,105 @@
+#include "app/air_forecast.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "app/air_limits.hpp"
+#include "app/jet_source.hpp"
+#include "case/extent.hpp"
+#include "sorter/launch.hpp"
+
+namespace ejecta {
+namespace {
+
+/// The jet, or for one that would have to be computed first, the self-similar one of the same valve.
+std::unique_ptr<JetSource> jet_of(Case c) {
+  if (c.jet.kind == JetKind::computed) c.jet.kind = JetKind::self_similar;
+  return make_jet_source(c);
+}
+
+/// Highest speed on the jet's axis at height z until then, m/s.
+double peak_speed(const JetSource& jet, double until, double z) {
+  constexpr int samples = 256;
+  double fastest = 0.0;
+  for (int n = 0; n <= samples; ++n) fastest = std::max(fastest, jet.fastest(until * n / samples, z));
+  return fastest;
+}
+
+/// When a body that nothing disturbs has left the box for good, s.
+double leaves_box(const Case& c, const BodySpec& b, const Box& box) {
+  if (b.motion == Motion::fixed) return c.run.end_time;
+  constexpr int samples = 2000;
+  const FlightState start = c.launch.enabled && b.on_belt
+                                ? launch_state(c.launch, c.jet.nozzle, c.environment.gravity, 0.0)
+                                : FlightState{b.position, b.velocity};
+  const Vec3 half = half_extent(b);
+  const double reach = b.shape == ShapeKind::sphere ? half.x() : half.norm();
+  double last = 0.0;
+  for (int n = 0; n <= samples; ++n) {
+    const double t = c.run.end_time * n / samples;
+    const Vec3 x = start.position + t * start.velocity + 0.5 * t * t * c.environment.gravity;
+    const bool inside =
+        (x.array() + reach >= box.low.array()).all() && (x.array() - reach <= box.high.array()).all();
+    if (inside) last = t;
+  }
+  return last;
+}
+
+/// The jet after its valve has closed, on its axis: behind the wave that tells it of the end, u = z / 2t
+/// solves the balance of momentum over its cross-section (Musculus 2009, entrainment wave; Gaussian profile),
+/// m/s.
+double dying_speed(double from_nozzle, double since_closed) { return from_nozzle / (2.0 * since_closed); }
+
+/// Time after which the air of the box holds only the share kDeadAir of the energy of the steady jet, s: with
+/// u = K / z before and z / 2t after, energies as u2 z2 dz.
+double dying_time(const Case& original) {
+  Case c = original;
+  c.jet.kind = JetKind::self_similar;
+  const std::vector<double>& z = c.grid.axis[2].points;
+  const double low = z.front() - c.jet.nozzle.z(), high = z.back() - c.jet.nozzle.z();
+  const double k = high * peak_speed(*jet_of(c), c.run.end_time, z.back());
+  const double moment = (std::pow(high, 5) - std::pow(std::max(low, 0.0), 5)) / 5.0;
+  return std::sqrt(moment / (4.0 * kDeadAir * k * k * (high - low)));
+}
+
+}  // namespace
+
+double jet_speed(const Case& c) {
+  return peak_speed(*jet_of(c), c.run.end_time, c.grid.axis[2].points.front());
+}
+
+double air_until(const Case& c) {
+  if (c.flow.solver == FlowSolver::none || !has_jet(c) || c.run.until != RunUntil::verdict)
+    return c.run.end_time;
+  const double closed = jet_of(c)->dead_from();
+  double leave = 0.0;
+  for (const BodySpec& b : c.bodies) leave = std::max(leave, leaves_box(c, b, *grid_box(c)));
+  return std::min(c.run.end_time, std::max(closed, std::min(leave, closed + dying_time(c))));
+}
+
+std::int64_t jet_steps(const Case& c, const Grid& grid, double until) {
+  const std::unique_ptr<JetSource> jet = jet_of(c);
+  const double closed = jet->dead_from(), nozzle = c.jet.nozzle.z();
+  const Axis& z = grid.axis(2);
+  double longest = std::min(c.run.time_step_max, kStepOfPulse * c.valve.duration);
+  for (const double interval : {c.output.fields_interval, c.output.slices_interval})
+    if (interval > 0.0) longest = std::min(longest, interval);
+  std::vector<double> peak;
+  for (const double height : z.centre) peak.push_back(peak_speed(*jet, closed, height));
+  constexpr int samples = 400;
+  double steps = 0.0;
+  for (int n = 0; n < samples; ++n) {
+    const double t = until * (n + 0.5) / samples;
+    double rate = 1.0 / longest;
+    for (std::size_t k = 0; k < z.width.size(); ++k) {
+      const double speed = t < closed ? jet->fastest(t, z.centre[k])
+                                      : std::min(peak[k], dying_speed(z.centre[k] - nozzle, t - closed));
+      rate = std::max(rate, speed / (c.run.courant * z.width[k]));
+    }
+    steps += rate * until / samples;
+  }
+  return static_cast<std::int64_t>(std::ceil(steps));
+}
+
+}  // namespace ejecta

@@ -1,0 +1,127 @@
+#include "app/incompressible_states.hpp"
+
+#include <fmt/format.h>
+
+#include "base/error.hpp"
+
+namespace ejecta {
+namespace {
+
+const char* face_name(int face) {
+  static constexpr const char* names[] = {"x_min", "x_max", "y_min", "y_max", "z_min", "z_max"};
+  return names[face];
+}
+
+BoundaryState jet_state(const Grid& grid, const StillAir& air, const JetSource& source, const Vec3& x,
+                        double t) {
+  const auto half = [&](int d) {
+    const Axis& a = grid.axis(d);
+    return 0.5 * a.width[static_cast<std::size_t>(a.cell_at(x[d]))];
+  };
+  const JetState jet = source.at(x, half(0), grid.axisymmetric() ? 0.0 : half(1), t);
+  BoundaryState s;
+  for (int d = 0; d < 3; ++d) s.velocity[static_cast<std::size_t>(d)] = static_cast<Real>(jet.velocity[d]);
+  const double k = std::max(jet.k, air.k);
+  const double epsilon = jet.k > air.k ? jet.epsilon : 0.09 * k * k / air.nu;
+  s.k = static_cast<Real>(k);
+  s.second = static_cast<Real>(air.omega ? epsilon / (0.09 * k) : epsilon);
+  return s;
+}
+
+}  // namespace
+
+StillAir::StillAir(const Case& c)
+    : density(c.fluid.density),
+      nu(c.fluid.viscosity / c.fluid.density),
+      omega(c.flow.turbulence == TurbulenceModel::k_omega_sst),
+      k(1e-4),
+      second(omega ? k / nu : 0.09 * k * k / nu) {}
+
+StateFormula::StateFormula(const StateSpec& s, const StillAir& air) {
+  if (s.velocity)
+    for (std::size_t d = 0; d < 3; ++d) {
+      velocity[d] = Expression((*s.velocity)[d]);
+      varies = varies || velocity[d].uses_time();
+    }
+  has_velocity = s.velocity.has_value();
+  k = s.k.value_or(air.k);
+  second = air.second;
+  if (s.epsilon) second = air.omega ? *s.epsilon / (0.09 * k) : *s.epsilon;
+}
+
+Boundary make_boundary(const Case& c, const Grid& grid, const StillAir& air, const JetSource* jet, int face) {
+  const BoundarySpec& spec = c.boundary[static_cast<std::size_t>(face)];
+  const StateFormula formula(spec.state, air);
+  Boundary b;
+  const auto constant_turbulence = [](BoundaryState s, double k, double second) {
+    s.k = static_cast<Real>(k);
+    s.second = static_cast<Real>(second);
+    return s;
+  };
+  const bool axis = grid.axisymmetric() && face == 0 && grid.lower().x() == 0.0;
+  switch (axis ? BoundaryType::symmetry : spec.type) {
+    case BoundaryType::slip:
+    case BoundaryType::symmetry:
+      b.kind = BoundaryKind::mirror;
+      return b;
+    case BoundaryType::periodic:
+      b.kind = BoundaryKind::periodic;
+      return b;
+    case BoundaryType::pressure_outlet:
+    case BoundaryType::wave_transmissive:
+    case BoundaryType::free_stream:
+    case BoundaryType::total_pressure: {
+      b.kind = BoundaryKind::open;
+      b.total_pressure = spec.type == BoundaryType::total_pressure;
+      const double ambient = c.environment.pressure;
+      if (b.total_pressure && spec.total_pressure > 0.0)
+        b.pressure = (spec.total_pressure - ambient) / air.density;
+      if (spec.state.pressure) b.pressure = Expression(*spec.state.pressure)(0, 0, 0, 0) / air.density;
+      b.state = [=](const Vec3&, double) { return constant_turbulence({}, formula.k, formula.second); };
+      if (!spec.patches.empty())
+        throw InputError(fmt::format(
+            "boundary.{}: patches of an incompressible flow need a face of type wall, velocity or jet",
+            face_name(face)));
+      return b;
+    }
+    case BoundaryType::wall:
+    case BoundaryType::moving_wall:
+      b.kind = spec.patches.empty() ? BoundaryKind::wall : BoundaryKind::inflow;
+      break;
+    case BoundaryType::velocity:
+    case BoundaryType::jet:
+      b.kind = BoundaryKind::inflow;
+      break;
+  }
+  if (spec.type == BoundaryType::jet && face != 4)
+    throw InputError("a jet blows along +z: it enters through boundary.z_min");
+  b.varies = formula.varies;
+  struct Piece {
+    Vec3 centre;
+    double radius;
+    bool jet;
+    StateFormula formula;
+  };
+  std::vector<Piece> pieces;
+  for (const PatchSpec& p : spec.patches) {
+    pieces.push_back({p.centre, p.radius, p.type == BoundaryType::jet, StateFormula(p.state, air)});
+    b.varies = b.varies || pieces.back().jet || pieces.back().formula.varies;
+  }
+  const bool whole_jet = spec.type == BoundaryType::jet;
+  b.varies = b.varies || whole_jet;
+  b.state = [=, &c, &grid](Vec3 x, double t) {
+    if (grid.axisymmetric()) x.y() = c.jet.nozzle.y();  // all around is in the one cell
+    bool blown = whole_jet;
+    const StateFormula* f = &formula;
+    for (const Piece& p : pieces)
+      if ((x - p.centre).norm() <= p.radius) blown = p.jet, f = &p.formula;
+    BoundaryState s;
+    if (blown) return jet_state(grid, air, *jet, x, t);
+    const Vec3 v = f->at(x, t);
+    for (int d = 0; d < 3; ++d) s.velocity[static_cast<std::size_t>(d)] = static_cast<Real>(v[d]);
+    return constant_turbulence(s, f->k, f->second);
+  };
+  return b;
+}
+
+}  // namespace ejecta
