@@ -109,6 +109,7 @@ class CommandLine(unittest.TestCase):
         self.assertIn("ejecta run --help", answer.stderr)
         self.assertEqual(ejecta("run", self.case(), "--resume", "--force").returncode, 2)
         self.assertEqual(ejecta("report", "nowhere").returncode, 2)
+        self.assertIn("is a file", ejecta("report", self.case()).stderr)
         self.assertEqual(ejecta("run", self.case(), "--threads", "0").returncode, 2)
 
     def test_a_wrong_case_is_bad_input_with_the_line(self):
@@ -122,6 +123,7 @@ class CommandLine(unittest.TestCase):
     def test_check_looks_at_all_cases_even_after_a_wrong_one(self):
         answer = ejecta("check", "nowhere.toml", self.case())
         self.assertEqual(answer.returncode, 2)
+        self.assertTrue(answer.stderr.startswith("error: nowhere.toml"))
         self.assertIn('"ball"', answer.stdout)
 
     def test_every_new_case_passes_check(self):
@@ -137,6 +139,8 @@ class CommandLine(unittest.TestCase):
         self.assertIn("rise_time", ejecta("explain").stdout)
         self.assertIn("example", ejecta("explain", "valve.rise_time").stdout)
         self.assertEqual(ejecta("explain", "no such thing").returncode, 2)
+        self.assertIn("valve.opens_at", ejecta("explain", "valve", "opens").stdout)
+        self.assertNotIn("splitter.height", ejecta("explain", "turb").stdout, "undisturbed is no turbulence")
         json.loads(ejecta("explain", "--json-schema").stdout)
 
     def test_every_shipped_case_passes_check(self):

@@ -94,7 +94,6 @@ TEST(Refined, CellsTimesTheFactorAndTheStepDividedByIt) {
   EXPECT_EQ(fine.grid.axis[0].cells, (std::vector{20, 40}));
   EXPECT_EQ(fine.grid.axis[1].cells, std::vector{1}) << "a direction that is not there stays so";
   EXPECT_EQ(fine.run.time_step, 0.05);
-  EXPECT_THROW(refined(c, 1.23), InputError);
 }
 
 TEST(Orders, FromTheErrorsOfSuccessiveGrids) {

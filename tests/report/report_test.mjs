@@ -24,9 +24,14 @@ const SIZE_LIMIT = 5e6;
 const UNITS = { mm: 1e-3, "m/s": 1, "mN\u00b7s": 1e-3, g: 1e-3, ms: 1e-3, s: 1, million: 1e6 };
 const SUPERSCRIPT = "\u2070\u00b9\u00b2\u00b3\u2074\u2075\u2076\u2077\u2078\u2079";
 
-/** The number of a text such as "+31.2 mm" or "2.2x10^-6" and half a unit of its last digit, in SI. */
+/** The number of a text such as "+31.2 mm", "2.2x10^-6" or "2 min 14 s" and half a unit of its last digit, in SI. */
 function shown(text) {
   const plain = text.replace(/\u2212/g, "-").replace(/\u202f/g, "").trim();
+  const clock = plain.match(/^(\d+) (h|min) (\d+) (min|s)$/);
+  if (clock) {
+    const last = clock[4] === "min" ? 60 : 1;
+    return { value: (Number(clock[1]) * 60 + Number(clock[3])) * last, half: last };
+  }
   const power = plain.match(/\u00d710([\u207b]?)([\u2070\u00b9\u00b2\u00b3\u2074-\u2079]+)/);
   const exponent = power ? Number((power[1] ? "-" : "") + [...power[2]].map((c) => SUPERSCRIPT.indexOf(c)).join("")) : 0;
   const number = plain.match(/[+-]?\d+(\.(\d+))?/);
