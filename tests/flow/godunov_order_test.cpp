@@ -39,10 +39,10 @@ double entropy_wave(int cells) {
 }
 
 /// A right-running simple sound wave of small amplitude, carried once around.
-double sound_wave(int cells) {
+double sound_wave(int cells, double amplitude) {
   auto t = make_tube(2, cells);
   t->all_boundaries(BoundaryType::periodic);
-  const double c = std::sqrt(1.4), amplitude = 1e-3;
+  const double c = std::sqrt(1.4);
   const auto state = [&](double z) {
     const double a = amplitude * std::sin(2 * kPi * z);
     // exactly isentropic, invariant u - 2c/(gamma - 1) constant
@@ -90,9 +90,19 @@ TEST(GodunovOrder, EntropyWave) {
 }
 
 TEST(GodunovOrder, SoundWave) {
-  const double order = observed_order(sound_wave, 32);
+  const double order = observed_order([](int n) { return sound_wave(n, 1e-3); }, 32);
   EXPECT_GT(order, 1.7);
   EXPECT_LT(order, 3.0);
+}
+
+/// The limiter flattens the cells at the crests, fewer of all the finer the grid: advecting a sine with it
+/// has order 1.82 from 32 to 64 cells and 1.97 from 160 to 320. So weak a wave steepens by less than the
+/// error.
+TEST(GodunovOrder, SoundWaveOnFineGrids) {
+  if (sizeof(Real) == sizeof(float)) GTEST_SKIP() << "round-off of float is larger than the wave";
+  const double order = observed_order([](int n) { return sound_wave(n, 1e-6); }, 160);
+  EXPECT_GT(order, 1.95);
+  EXPECT_LT(order, 2.1);
 }
 
 TEST(GodunovOrder, IsentropicVortex) {
