@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "app/grid_sampler.hpp"
 #include "app/jet_drive.hpp"
+#include "app/jet_source.hpp"
 #include "base/error.hpp"
 #include "base/state_reader.hpp"
 #include "base/stopwatch.hpp"
@@ -25,19 +27,31 @@ class CompressibleModel : public FlowModel {
     solver_ = solver_from_case(c, grid, inlets_);
     solver_->keep_ledger();
     if (!inlets_.empty()) drive_ = std::make_unique<JetDrive>(c);
+    if (c.boundary[kJetFace].type == BoundaryType::jet) {
+      jet_ = make_jet_source(c);
+      let_in(0.0);
+    }
     momentum_at_start_ = momentum();
     mass_at_start_ = solver_->total(kRho);
     energy_at_start_ = solver_->total(kP);
   }
 
-  double stable_dt(double) override {
-    return std::min(solver_->stable_dt(case_.run.courant), case_.run.time_step_max);
+  double stable_dt(double time) override {
+    double dt = std::min(solver_->stable_dt(case_.run.courant), case_.run.time_step_max);
+    if (!jet_) return dt;
+    // A jet that starts must not outrun the step that lets it in, nor open and close unseen within one.
+    dt = std::min(dt, 0.01 * case_.valve.duration);
+    const double h = grid_.axis(2).width.front(), z = grid_.axis(2).face.front();
+    return std::min(dt,
+                    std::max(0.5 * dt, case_.run.courant * h / std::max(jet_->fastest(time + dt, z), 1e-30)));
   }
   double courant(double dt) const override { return dt / solver_->stable_dt(1.0); }
   void advance(double time, double dt, SolidMask&) override {
     const ScopedTimer timer(seconds_);
     if (drive_) drive_->apply(time + 0.5 * dt, *solver_, inlets_);
+    if (jet_) let_in(time + 0.5 * dt);
     solver_->advance(dt);
+    fastest_ = std::max(fastest_, fastest());
     time_ = time + dt;
     ++calls_;
   }
@@ -111,16 +125,24 @@ class CompressibleModel : public FlowModel {
     ledger["energy_relative_residual"] = std::abs(energy - energy_at_start_ - l.energy) /
                                          std::max({std::abs(energy_at_start_), std::abs(l.energy), 1e-30});
     ledger["mass_kg"] = mass;
+    result["fastest_m_s"] = fastest_;
     if (case_.exact.density)
       add_errors(result, "density", *case_.exact.density, [](const GasState& s) { return s.density; });
     if (case_.exact.pressure)
       add_errors(result, "pressure", *case_.exact.pressure, [](const GasState& s) { return s.pressure; });
   }
   std::vector<output::OperatorTime> operators() const override {
+    if (case_.flow.solver == FlowSolver::compressible_piso)
+      return {
+          {"flow.compressible_piso",
+           "U = U - dt div(q U_up), q and p implicit in sound: dp/(K dt^2) - div(grad dp/rho) = -div q/dt "
+           "(Eqs 1-3 with energy)",
+           seconds_, calls_}};
     return {{"flow.godunov", "U = U - dt div F(U), HLLC on MUSCL states, two stages (Eqs 1-3 with energy)",
              seconds_, calls_}};
   }
   std::vector<double> events() const override {
+    if (jet_) return jet_->events();
     return drive_ ? drive_->valve().events() : std::vector<double>{};
   }
   std::vector<Field*> state_fields() override { return solver_->state(); }
@@ -136,7 +158,8 @@ class CompressibleModel : public FlowModel {
             momentum_at_start_.y(),
             momentum_at_start_.z(),
             mass_at_start_,
-            energy_at_start_};
+            energy_at_start_,
+            fastest_};
   }
   void restore_numbers(std::span<const double> n, double time) override {
     time_ = time;
@@ -144,11 +167,54 @@ class CompressibleModel : public FlowModel {
     StateReader in(n, "ledger of the gas");
     for (double* v : {&l.mass, &l.mass_inward, &l.energy}) *v = in.number();
     for (Vec3* v : {&l.momentum, &momentum_at_start_}) *v = in.vec3();
-    for (double* v : {&mass_at_start_, &energy_at_start_}) *v = in.number();
+    for (double* v : {&mass_at_start_, &energy_at_start_, &fastest_}) *v = in.number();
     in.end();
+    if (jet_) let_in(time);
   }
 
  private:
+  static constexpr int kJetFace = 4;  ///< z_min
+
+  /// What the jet brings to each cell of its face. The jet's velocity is that of air of the ambient density
+  /// with the same momentum; here rho w^2 is kept, and the total temperature is that of the ambient, of which
+  /// a jet some tens of orifices away consists (Crocco: it is even where the reservoir has it too): w^2 = M R
+  /// T0 / (p + M R/(2 cp)), M = rho_a w_a^2.
+  void let_in(double time) {
+    const Gas& gas = solver_->options().gas;
+    const double r = gas.gas_constant, cp = gas.specific_heat_pressure();
+    const double pressure = case_.environment.pressure, total = case_.environment.temperature;
+    const Axis &x = grid_.axis(0), &y = grid_.axis(1);
+    const double ambient = pressure / (r * total);
+    const auto state = [&](const Vec3& at) {
+      const auto i = static_cast<std::size_t>(x.cell_at(at.x())),
+                 j = static_cast<std::size_t>(y.cell_at(at.y()));
+      const JetState jet = jet_->at(grid_.axisymmetric() ? Vec3(at.x(), 0.0, at.z()) : at, 0.5 * x.width[i],
+                                    0.5 * y.width[j], time);
+      const double momentum = ambient * jet.velocity.squaredNorm();
+      const double square = momentum * r * total / (pressure + 0.5 * momentum * r / cp);
+      GasState s;
+      s.pressure = pressure;
+      s.density = pressure / (r * (total - 0.5 * square / cp));
+      if (momentum > 0.0) s.velocity = std::sqrt(square / jet.velocity.squaredNorm()) * jet.velocity;
+      const StateSpec still;
+      const GasState around = gas_state(case_, still, at, time);
+      s.k = std::max(jet.k, around.k);
+      const double epsilon = std::max(jet.epsilon, still_epsilon(around));
+      s.e = case_.flow.turbulence == TurbulenceModel::k_omega_sst ? omega_of(s.k, epsilon) : epsilon;
+      return s;
+    };
+    solver_->boundaries().set_states(kJetFace, std::cref(state));  // a reference: nothing is allocated
+  }
+  double still_epsilon(const GasState& s) const {
+    return case_.flow.turbulence == TurbulenceModel::k_omega_sst ? 0.09 * s.k * s.e : s.e;
+  }
+  double fastest() const {
+    const auto u = view(kU), v = view(kV), w = view(kW);
+    return std::sqrt(double(reduce_max(
+        grid_.range(), [=](int i, int j, int k) __attribute__((always_inline)) {
+          return u(i, j, k) * u(i, j, k) + v(i, j, k) * v(i, j, k) + w(i, j, k) * w(i, j, k);
+        })));
+  }
   ConstFieldView view(Component c) const { return solver_->primitive()[static_cast<std::size_t>(c)].view(); }
   /// Volume-weighted mean and largest error of a scalar against a formula.
   template <class Value>
@@ -176,10 +242,12 @@ class CompressibleModel : public FlowModel {
   const Case& case_;
   const Grid& grid_;
   std::vector<DrivenInlet> inlets_;
-  std::unique_ptr<Solver> solver_;
+  std::unique_ptr<GasFlow> solver_;
   std::unique_ptr<JetDrive> drive_;
+  std::unique_ptr<JetSource> jet_;
   Vec3 momentum_at_start_{0, 0, 0};
   double mass_at_start_ = 0.0, energy_at_start_ = 0.0, seconds_ = 0.0, time_ = 0.0;
+  double fastest_ = 0.0;  ///< m/s, anywhere at any time
   std::int64_t calls_ = 0;
 };
 

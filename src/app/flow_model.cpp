@@ -2,7 +2,6 @@
 
 #include "app/compressible_model.hpp"
 #include "app/incompressible_model.hpp"
-#include "base/error.hpp"
 
 namespace ejecta {
 
@@ -22,10 +21,10 @@ std::unique_ptr<FlowModel> make_flow_model(const Case& c, const Grid& grid) {
     case FlowSolver::incompressible:
       return make_incompressible_model(c, grid);
     case FlowSolver::compressible:
-      return make_compressible_model(c, grid);
-    default:
-      throw InputError("this flow.solver cannot run in a box yet: use \"incompressible\" or `ejecta jet`");
+    case FlowSolver::compressible_piso:
+      break;
   }
+  return make_compressible_model(c, grid);
 }
 
 }  // namespace ejecta

@@ -63,18 +63,22 @@ double limiting_speed(const Gas& gas, double total_temperature) {
   return std::sqrt(2.0 * gas.specific_heat_pressure() * total_temperature);
 }
 
+/// Gas at rest behind a boundary, or behind the orifice of a valve.
 bool has_reservoir(const Case& c) {
-  const auto blows = [](const auto& b) { return b.type == BoundaryType::total_pressure; };
-  return has_jet(c) || std::any_of(c.boundary.begin(), c.boundary.end(), [&](const BoundarySpec& b) {
-           return blows(b) || std::any_of(b.patches.begin(), b.patches.end(), blows);
-         });
+  return std::any_of(c.boundary.begin(), c.boundary.end(), [](const BoundarySpec& b) {
+    return b.type == BoundaryType::total_pressure ||
+           std::any_of(b.patches.begin(), b.patches.end(), [](const PatchSpec& p) {
+             return p.type == BoundaryType::total_pressure || p.type == BoundaryType::jet;
+           });
+  });
 }
 
 double fastest_speed(const Case& c, const Grid& grid) {
   const Vec3 centre = 0.5 * (grid.lower() + grid.upper());
   if (is_compressible(c) && has_reservoir(c))
     return limiting_speed(gas_of(c), std::max(c.valve.supply_temperature, c.environment.temperature));
-  double fastest = has_flow(c) && has_jet(c) ? jet_speed(c) : 0.0;
+  const double sound = c.flow.solver == FlowSolver::compressible ? sound_speed(c, StateSpec{}, centre) : 0.0;
+  double fastest = has_flow(c) && has_jet(c) ? jet_speed(c) + sound : 0.0;
   for (const BoundarySpec& face : c.boundary) {
     if (face.state.velocity) fastest = std::max(fastest, fastest_state(c, face.state, centre));
     for (const PatchSpec& patch : face.patches)

@@ -48,7 +48,7 @@ class CompressibleAir : public JetAir {
   const Grid& grid_;
   JetDrive drive_;
   std::vector<godunov::DrivenInlet> inlets_;
-  std::unique_ptr<godunov::Solver> solver_;
+  std::unique_ptr<godunov::GasFlow> solver_;
 };
 
 /// Of constant density, from a velocity inlet (paper 2.2.2).

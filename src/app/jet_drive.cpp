@@ -28,11 +28,11 @@ NozzleExit JetDrive::exit(double time) const {
   return nozzle_exit(gas_, valve_.total_pressure(time, ambient_), temperature_, ambient_);
 }
 
-void JetDrive::apply(double time, godunov::Solver& solver,
+void JetDrive::apply(double time, godunov::GasFlow& flow,
                      const std::vector<godunov::DrivenInlet>& inlets) const {
   const double fluctuation = intensity_ * exit(time).velocity;
   for (const godunov::DrivenInlet& inlet : inlets) {
-    godunov::Condition& condition = solver.boundaries().condition(inlet.handle);
+    godunov::Condition& condition = flow.boundaries().condition(inlet.handle);
     condition.total_pressure = valve_.total_pressure(time, ambient_);
     condition.total_temperature = temperature_;
     if (fluctuation <= 0.0) continue;

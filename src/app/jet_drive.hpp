@@ -14,7 +14,7 @@ class JetDrive {
  public:
   /// Throws InputError when the supply cannot blow against the ambient pressure.
   explicit JetDrive(const Case& c);
-  void apply(double time, godunov::Solver& solver, const std::vector<godunov::DrivenInlet>& inlets) const;
+  void apply(double time, godunov::GasFlow& flow, const std::vector<godunov::DrivenInlet>& inlets) const;
   /// Exact one-dimensional state of the orifice at `time`.
   NozzleExit exit(double time) const;
   const Valve& valve() const { return valve_; }

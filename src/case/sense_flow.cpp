@@ -32,7 +32,7 @@ void sense_run(const Case& c, Findings& found) {
                 fmt::format("a step of {} is longer than the run",
                             format_quantity(*c.run.time_step, Dimension::time)),
                 "a step shorter than run.end_time", "time_step = \"10 us\"");
-  const double most = c.flow.solver == FlowSolver::compressible ? 1.0 : 2.0;
+  const double most = is_incompressible(c) ? 2.0 : 1.0;
   if (has_flow(c) && !c.run.time_step && c.run.courant > most)
     found.error("run.courant",
                 fmt::format("the explicit transport of the {} solver cannot hold a Courant number of {}",

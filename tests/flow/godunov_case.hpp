@@ -11,10 +11,11 @@ inline Axis even_axis(double low, double high, int cells) { return make_axis({lo
 
 using GasAt = std::function<godunov::GasState(const Vec3&)>;
 
-struct Tube {
+template <class Flow>
+struct TubeOf {
   Grid grid;
-  godunov::Solver solver;
-  Tube(Axis x, Axis y, Axis z, bool axisymmetric, const godunov::Options& options)
+  Flow solver;
+  TubeOf(Axis x, Axis y, Axis z, bool axisymmetric, const godunov::Options& options)
       : grid(std::move(x), std::move(y), std::move(z), axisymmetric), solver(grid, options) {}
 
   void boundary(int face, BoundaryType type, const godunov::GasState& outside = {}) {
@@ -41,11 +42,14 @@ struct Tube {
   }
 };
 
+using Tube = TubeOf<godunov::Solver>;
+
 /// A tube along x (0), y (1) or z (2) of the unit length.
-inline std::unique_ptr<Tube> make_tube(int axis, int cells, const godunov::Options& options = {}) {
+template <class Flow = godunov::Solver>
+std::unique_ptr<TubeOf<Flow>> make_tube(int axis, int cells, const godunov::Options& options = {}) {
   std::array<Axis, 3> a;
   for (int d = 0; d < 3; ++d) a[static_cast<std::size_t>(d)] = even_axis(0, 1, d == axis ? cells : 1);
-  return std::make_unique<Tube>(a[0], a[1], a[2], false, options);
+  return std::make_unique<TubeOf<Flow>>(a[0], a[1], a[2], false, options);
 }
 
 }  // namespace ejecta::test

@@ -23,16 +23,23 @@ std::ptrdiff_t stride(const Block& w, int d) {
   return d == 0 ? 1 : d == 1 ? v.sy : v.sz;
 }
 
-void store(Block& w, int d, Real sign, std::ptrdiff_t n, const Primitive& g) {
+/// The cell at offset n in a face's axes: velocity along the inward normal (sign) and across.
+Primitive load(const BlockView<Real>& w, int d, Real sign, std::ptrdiff_t n) {
   const Across t = across(d);
-  const auto at = [&](int c) -> Real& { return w[static_cast<std::size_t>(c)].view().origin[n]; };
-  at(kRho) = g.rho;
-  at(kU + d) = sign * g.un;
-  at(kU + t.a) = g.ut;
-  at(kU + t.b) = g.us;
-  at(kP) = g.p;
-  at(kK) = g.k;
-  at(kE) = g.e;
+  return {
+      w.at(kRho, n), sign * w.at(kU + d, n), w.at(kU + t.a, n), w.at(kU + t.b, n), w.at(kP, n), w.at(kK, n),
+      w.at(kE, n)};
+}
+
+void store(const BlockView<Real>& w, int d, Real sign, std::ptrdiff_t n, const Primitive& g) {
+  const Across t = across(d);
+  w.at(kRho, n) = g.rho;
+  w.at(kU + d, n) = sign * g.un;
+  w.at(kU + t.a, n) = g.ut;
+  w.at(kU + t.b, n) = g.us;
+  w.at(kP, n) = g.p;
+  w.at(kK, n) = g.k;
+  w.at(kE, n) = g.e;
 }
 
 Primitive in_face_axes(const GasState& s, int d, Real sign, const GasConstants& gas) {
@@ -92,6 +99,21 @@ int Boundaries::add_disc(int face, const Vec3& centre, double radius, const Cond
   return handle;
 }
 
+void Boundaries::set_states(int face, const std::function<GasState(const Vec3&)>& outside) {
+  Face& f = face_[static_cast<std::size_t>(face)];
+  const int d = face / 2;
+  const Across t = across(d);
+  const Real sign = face % 2 ? Real(-1) : Real(1);
+  f.outside.resize(f.handle.size());
+  Vec3 x = face % 2 ? grid_.upper() : grid_.lower();
+  for (std::size_t cell = 0; cell < f.handle.size(); ++cell) {
+    const int a = int(cell) % grid_.n(t.a), b = int(cell) / grid_.n(t.a);
+    x[t.a] = grid_.axis(t.a).centre[static_cast<std::size_t>(a)];
+    x[t.b] = grid_.axis(t.b).centre[static_cast<std::size_t>(b)];
+    f.outside[cell] = in_face_axes(outside(x), d, sign, gas_);
+  }
+}
+
 int Boundaries::cells_of(int face, int handle) const {
   const auto& cells = face_[static_cast<std::size_t>(face)].handle;
   return static_cast<int>(std::count(cells.begin(), cells.end(), static_cast<std::uint8_t>(handle)));
@@ -111,14 +133,6 @@ void Boundaries::for_each_face_cell(int face, bool ghosts, const Visit& visit) c
   });
 }
 
-Primitive Boundaries::load(const Block& w, int face, std::ptrdiff_t n) const {
-  const int d = face / 2;
-  const Across t = across(d);
-  const Real sign = face % 2 ? Real(-1) : Real(1);
-  const auto at = [&](int c) { return w[static_cast<std::size_t>(c)].view().origin[n]; };
-  return {at(kRho), sign * at(kU + d), at(kU + t.a), at(kU + t.b), at(kP), at(kK), at(kE)};
-}
-
 void Boundaries::fill_face(Block& w, int face) const {
   const int d = face / 2, n = grid_.n(d);
   const Across t = across(d);
@@ -126,6 +140,7 @@ void Boundaries::fill_face(Block& w, int face) const {
   const int first = face % 2 ? n - 1 : 0, inward = face % 2 ? -1 : 1;
   const Face& f = face_[static_cast<std::size_t>(face)];
   const std::ptrdiff_t s = stride(w, d), sa = stride(w, t.a), sb = stride(w, t.b);
+  const auto v = view_block<Real>(w);
   // Air drawn in through the rim of a cylinder gets faster on its way: u r is kept. An even velocity would
   // make up for the difference by a pressure of rho c u h/(2 R).
   const Metrics r = grid_.metrics(0);
@@ -135,15 +150,18 @@ void Boundaries::fill_face(Block& w, int face) const {
   for_each_face_cell(face, true, [&](int a, int b, std::size_t cell) {
     const Condition& c = conditions_[f.handle[cell]];
     const std::ptrdiff_t at = first * s + a * sa + b * sb, step = inward * s;
-    const Primitive one = load(w, face, at), two = n > 1 ? load(w, face, at + step) : one;
+    const Primitive one = load(v, d, sign, at), two = n > 1 ? load(v, d, sign, at + step) : one;
     GhostStates g = {one, one};  // an axis of one cell carries no flux and no gradient
-    if (n > 1) g = ghost_states(c, gas_, one, two, in_face_axes(c.state, d, sign, gas_), f.anchor);
+    const bool own = !f.outside.empty() && f.handle[cell] == f.base;
+    if (n > 1)
+      g = ghost_states(c, gas_, one, two, own ? f.outside[cell] : in_face_axes(c.state, d, sign, gas_),
+                       f.anchor);
     if (is_open(c.type)) {
       g.first.un *= narrower;
       g.second.un *= narrowest;
     }
-    store(w, d, sign, at - step, g.first);
-    store(w, d, sign, at - 2 * step, g.second);
+    store(v, d, sign, at - step, g.first);
+    store(v, d, sign, at - 2 * step, g.second);
   });
 }
 

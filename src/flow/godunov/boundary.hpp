@@ -1,6 +1,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "case/case.hpp"
@@ -57,8 +58,16 @@ class Boundaries {
   int set_face(int face, const Condition& condition);
   /// A disc of `radius` around `centre` on a face; returns its handle. Cells belong to it by their centre.
   int add_disc(int face, const Vec3& centre, double radius, const Condition& condition);
+  /// Gives each cell of a face, its discs apart, an outside of its own: outside(centre of the face's cell)
+  /// takes the place of the condition's state. To be called again when it changes; allocates the first time
+  /// only.
+  void set_states(int face, const std::function<GasState(const Vec3&)>& outside);
   Condition& condition(int handle) { return conditions_[static_cast<std::size_t>(handle)]; }
   const Condition& condition(int handle) const { return conditions_[static_cast<std::size_t>(handle)]; }
+  /// What acts on cell a + b n_a of a face; a, b its axes in ascending order.
+  const Condition& at(int face, std::size_t cell) const {
+    return conditions_[face_[static_cast<std::size_t>(face)].handle[cell]];
+  }
   /// Cells of a face that belong to a handle.
   int cells_of(int face, int handle) const;
 
@@ -66,17 +75,17 @@ class Boundaries {
   /// First ghost layer of a derived field: that of the cell inside (periodic: of the far side).
   void extend(Field& field) const;
   bool is_wall(int face) const;  ///< apart from its patches
+  bool is_periodic(int axis) const;
 
  private:
   struct Face {
     std::uint8_t base = 0;             ///< handle of the face itself
     std::vector<std::uint8_t> handle;  ///< per cell of the face
+    std::vector<Primitive> outside;    ///< per cell, where set_states gave them
     Real anchor = 0;                   ///< of ghost_states
   };
   template <class Visit>
   void for_each_face_cell(int face, bool ghosts, const Visit& visit) const;
-  Primitive load(const Block& w, int face, std::ptrdiff_t n) const;
-  bool is_periodic(int axis) const;
   void fill_face(Block& w, int face) const;
   void fill_periodic(Block& w, int axis) const;
   const Grid& grid_;

@@ -1,7 +1,7 @@
 #pragma once
 #include <cmath>
 
-#include "flow/godunov/state.hpp"
+#include "flow/godunov/flux_kernel.hpp"
 
 /// Riemann solvers as pure functions of two states. Written so that two equal states at rest give a flux of
 /// exactly zero (momentum is counted from the reference pressure).
@@ -85,5 +85,35 @@ EJECTA_KERNEL Flux blend(const Flux& a, const Flux& b, Real share) {
   return {share * a.mass + rest * b.mass, share * a.un + rest * b.un, share * a.ut + rest * b.ut,
           share * a.us + rest * b.us, share * a.energy + rest * b.energy};
 }
+
+/// HLLC blended with HLL beside strong shocks, as a convection of FluxKernel.
+struct HllcConvection {
+  /// Smallest over largest pressure of a cell and its neighbours across the sweep.
+  template <class P, class Kernel>
+  EJECTA_KERNEL static Real evenness(const Kernel& at, std::ptrdiff_t o, const FaceSite& site) {
+    const Real* p = at.w.origin[kP] + o;
+    Real low = p[0], high = p[0];
+    const auto take = [&](Real q) __attribute__((always_inline)) {
+      low = q < low ? q : low;
+      high = q > high ? q : high;
+    };
+    take(p[site.st]);
+    take(p[-site.st]);
+    if constexpr (P::across) {
+      take(p[site.ss]);
+      take(p[-site.ss]);
+    }
+    return (low + at.gas.reference_pressure) / (high + at.gas.reference_pressure);
+  }
+
+  template <int D, class P, class Kernel>
+  EJECTA_KERNEL Flux flux(const Kernel& at, const Primitive& l, const Primitive& r,
+                          const FaceSite& site) const {
+    const WaveSpeeds speeds = wave_speeds_einfeldt(at.gas, l, r);
+    const Real e1 = evenness<P>(at, site.o, site), e2 = evenness<P>(at, site.o - site.s, site);
+    return blend(flux_hllc(at.gas, l, r, speeds), flux_hll(at.gas, l, r, speeds),
+                 hllc_share(e1 < e2 ? e1 : e2));
+  }
+};
 
 }  // namespace ejecta::godunov

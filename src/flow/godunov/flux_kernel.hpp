@@ -1,8 +1,8 @@
 #pragma once
-#include "flow/godunov/flux_hllc.hpp"
 #include "flow/godunov/flux_viscous.hpp"
 #include "flow/godunov/geometry.hpp"
 #include "flow/godunov/limiter.hpp"
+#include "flow/godunov/state.hpp"
 
 namespace ejecta::godunov {
 
@@ -25,9 +25,18 @@ struct Diffusion {
   Real inner_sigma_k = 0, inner_sigma_e = 0;  ///< inner - outer
 };
 
-/// Flux through the lower face along axis D of cell (i, j, k): MUSCL on the primitive variables, HLLC blended
-/// with HLL beside strong shocks, central viscous fluxes. Written per area into `flux`.
-template <int D, class P>
+/// Where a sweep stands: a face and its neighbourhood.
+struct FaceSite {
+  std::ptrdiff_t o;          ///< offset of the cell above the face
+  std::ptrdiff_t s, st, ss;  ///< strides along the sweep and across it (t in the x-z plane, s the other)
+  int m;                     ///< index along the sweep
+};
+
+/// Flux through the lower face along axis D of cell (i, j, k): MUSCL on the primitive variables, what
+/// `convection` makes of the two sides, central viscous fluxes. Written per area into `flux`.
+///
+///   convection.flux<D, P>(kernel, left, right, site) -> Flux
+template <int D, class P, class Convection>
 struct FluxKernel {
   BlockView<const Real> w;
   BlockView<Real> flux;
@@ -36,6 +45,7 @@ struct FluxKernel {
   GasConstants gas;
   Diffusion diffusion;
   std::array<AxisLengths, 3> axis;
+  Convection convection;
 
   // The sweep's own names: n along it, t across it in the x-z plane, s the remaining direction.
   static constexpr int n_axis = D, t_axis = D == 0 ? 2 : 0, s_axis = D == 1 ? 2 : 1;
@@ -59,23 +69,6 @@ struct FluxKernel {
             d - Real(0.5) * g.width[m] * limiter_van_leer(here, above)};
   }
 
-  /// Smallest over largest pressure of a cell and its neighbours across the sweep.
-  EJECTA_KERNEL Real evenness(std::ptrdiff_t o, std::ptrdiff_t st, std::ptrdiff_t ss) const {
-    const Real* p = w.origin[kP] + o;
-    Real low = p[0], high = p[0];
-    const auto take = [&](Real q) __attribute__((always_inline)) {
-      low = q < low ? q : low;
-      high = q > high ? q : high;
-    };
-    take(p[st]);
-    take(p[-st]);
-    if constexpr (P::across) {
-      take(p[ss]);
-      take(p[-ss]);
-    }
-    return (low + gas.reference_pressure) / (high + gas.reference_pressure);
-  }
-
   /// d(component c)/d(axis a) on the face: mean of the central differences in the two cells beside it.
   EJECTA_KERNEL Real across_face(int c, int a, std::ptrdiff_t o, std::ptrdiff_t s, std::ptrdiff_t st,
                                  int index) const {
@@ -97,9 +90,7 @@ struct FluxKernel {
     if constexpr (P::across) us = reconstruct(cs, o, s, m);
     const Primitive l{rho.left, un.left, ut.left, us.left, p.left};
     const Primitive r{rho.right, un.right, ut.right, us.right, p.right};
-    const WaveSpeeds speeds = wave_speeds_einfeldt(gas, l, r);
-    const Real e1 = evenness(o, st, ss), e2 = evenness(o - s, st, ss);
-    Flux f = blend(flux_hllc(gas, l, r, speeds), flux_hll(gas, l, r, speeds), hllc_share(e1 < e2 ? e1 : e2));
+    Flux f = convection.template flux<D, P>(*this, l, r, FaceSite{o, s, st, ss, m});
 
     if constexpr (P::viscous) add_diffusion(f, i, o, s, st, ss, m, mt, ms);
     flux.at(kRho, o) = f.mass;

@@ -4,7 +4,9 @@
 #include <limits>
 
 #include "case/expression.hpp"
+#include "flow/godunov/solver.hpp"
 #include "flow/godunov/turbulence_kernel.hpp"
+#include "flow/piso/compressible.hpp"
 
 namespace ejecta::godunov {
 namespace {
@@ -34,7 +36,7 @@ GasState initial_state(const Case& c, const Vec3& x) {
 Condition condition_of(const Case& c, BoundaryType type, const StateSpec& state, double total_pressure,
                        double total_temperature, const Vec3& position) {
   Condition condition;
-  condition.type = type == BoundaryType::jet ? BoundaryType::total_pressure : type;
+  condition.type = type;
   condition.state = gas_state(c, state, position, 0.0);
   condition.total_pressure = total_pressure > 0.0 ? total_pressure : c.environment.pressure;
   condition.total_temperature = total_temperature > 0.0 ? total_temperature : c.environment.temperature;
@@ -89,23 +91,25 @@ Options options_from_case(const Case& c) {
   return o;
 }
 
-std::unique_ptr<Solver> solver_from_case(const Case& c, const Grid& grid, std::vector<DrivenInlet>& inlets) {
+std::unique_ptr<GasFlow> solver_from_case(const Case& c, const Grid& grid, std::vector<DrivenInlet>& inlets) {
   Options options = options_from_case(c);
   options.reference_pressure = reference_pressure(c, grid);
-  auto solver = std::make_unique<Solver>(grid, options);
+  std::unique_ptr<GasFlow> solver;
+  if (c.flow.solver == FlowSolver::compressible_piso)
+    solver = std::make_unique<piso::Compressible>(grid, options);
+  else solver = std::make_unique<Solver>(grid, options);
   for (int face = 0; face < 6; ++face) {
     const BoundarySpec& b = c.boundary[static_cast<std::size_t>(face)];
     Vec3 middle = 0.5 * (grid.lower() + grid.upper());
     middle[face / 2] = face % 2 ? grid.upper()[face / 2] : grid.lower()[face / 2];
     const bool axis = grid.axisymmetric() && face == 0 && grid.lower().x() == 0.0;
     const BoundaryType type = axis || !grid.active(face / 2) ? BoundaryType::symmetry : b.type;
-    const int handle = solver->boundaries().set_face(
-        face, condition_of(c, b.type == BoundaryType::periodic ? b.type : type, b.state, b.total_pressure,
-                           b.total_temperature, middle));
-    if (type == BoundaryType::jet) inlets.push_back({face, handle, c.jet.nozzle, 0.0});
+    solver->boundaries().set_face(face, condition_of(c, b.type == BoundaryType::periodic ? b.type : type,
+                                                     b.state, b.total_pressure, b.total_temperature, middle));
     for (const PatchSpec& p : b.patches) {
+      const BoundaryType opened = p.type == BoundaryType::jet ? BoundaryType::total_pressure : p.type;
       const Condition condition =
-          condition_of(c, p.type, p.state, p.total_pressure, p.total_temperature, p.centre);
+          condition_of(c, opened, p.state, p.total_pressure, p.total_temperature, p.centre);
       const int disc = solver->boundaries().add_disc(face, p.centre, p.radius, condition);
       if (p.type == BoundaryType::jet) inlets.push_back({face, disc, p.centre, p.radius});
     }

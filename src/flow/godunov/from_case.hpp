@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "case/case.hpp"
-#include "flow/godunov/solver.hpp"
+#include "flow/godunov/gas_flow.hpp"
 
 namespace ejecta::godunov {
 
@@ -17,16 +17,17 @@ GasState gas_state(const Case& c, const StateSpec& spec, const Vec3& position, d
 /// omega = epsilon / (beta* k), 1/s
 double omega_of(double k, double epsilon);
 
-/// A face or patch whose gas a valve drives: type "jet".
+/// An orifice whose gas a valve drives: a disc of type "jet".
 struct DrivenInlet {
   int face = 0;
   int handle = 0;
   Vec3 centre{0, 0, 0};
-  double radius = 0.0;  ///< m; 0: the whole face
+  double radius = 0.0;  ///< m
 };
 
-/// Solver of a case with its boundaries and initial state. A jet's inlet is a total-pressure inlet, shut
-/// until its owner opens it.
-std::unique_ptr<Solver> solver_from_case(const Case& c, const Grid& grid, std::vector<DrivenInlet>& inlets);
+/// The solver that flow.solver names, with its boundaries and initial state. An orifice is a total-pressure
+/// inlet, shut until its owner opens it; a whole face of type "jet" lets in what its owner sets cell by cell
+/// (Boundaries::set_states).
+std::unique_ptr<GasFlow> solver_from_case(const Case& c, const Grid& grid, std::vector<DrivenInlet>& inlets);
 
 }  // namespace ejecta::godunov

@@ -3,6 +3,19 @@
 
 namespace ejecta::godunov {
 
+/// Density, velocity and pressure of conserved values, into cell `o` of `w`. Momentum across counts where P
+/// says so.
+template <class P>
+EJECTA_KERNEL void store_primitive(const BlockView<Real>& w, std::ptrdiff_t o, const GasConstants& gas,
+                                   Real rho, Real mu, Real mv, Real mw, Real energy) {
+  const Real inv = 1 / rho;
+  w.at(kRho, o) = rho;
+  w.at(kU, o) = mu * inv;
+  w.at(kW, o) = mw * inv;
+  if constexpr (P::across) w.at(kV, o) = mv * inv;
+  w.at(kP, o) = (gas.gamma - 1) * (energy - Real(0.5) * inv * (mu * mu + mv * mv + mw * mw));
+}
+
 /// One stage of a strong-stability-preserving Runge-Kutta method in the form of Shu & Osher (1988):
 /// U <- keep U0 + (1 - keep) (V + dt L), L = -div F + the pressure of the hoop in axisymmetric geometry; and
 /// the primitive variables of the result.
@@ -54,13 +67,9 @@ struct UpdateKernel {
     Real mv = 0;
     if constexpr (P::across) mv = advance(kV, o, residual(kV, o, i, j, k));
     const Real energy = advance(kP, o, residual(kP, o, i, j, k));
-    const Real inv = 1 / rho;
-    next.at(kRho, o) = rho;
-    next.at(kU, o) = mu * inv;
-    next.at(kW, o) = mw * inv;
-    if constexpr (P::across) next.at(kV, o) = mv * inv;
-    next.at(kP, o) = (gas.gamma - 1) * (energy - Real(0.5) * inv * (mu * mu + mv * mv + mw * mw));
+    store_primitive<P>(next, o, gas, rho, mu, mv, mw, energy);
     if constexpr (P::turbulent) {
+      const Real inv = 1 / rho;
       next.at(kK, o) = advance(kK, o, residual(kK, o, i, j, k)) * inv;
       next.at(kE, o) = advance(kE, o, residual(kE, o, i, j, k)) * inv;
     }

@@ -43,18 +43,20 @@ void IncrementSmoother::prepare(double nu_dt) {
   }
 }
 
-/// Along x the recurrence runs over the registers of kRealLanes rows at once, transposed there and back.
-void IncrementSmoother::smooth_x(FieldView delta, int k) const {
+/// Along x the recurrence runs over the registers of kRealLanes rows at once, transposed there and back. Rows
+/// [first, last) are counted plane by plane.
+void IncrementSmoother::smooth_x(FieldView delta, int first, int last) const {
   const int width = (nx_ + kRealLanes - 1) / kRealLanes * kRealLanes;
   RealLanes* column =
       reinterpret_cast<RealLanes*>(thread_scratch(static_cast<std::size_t>(width * kRealLanes)));
   const Factors& f = factors_[0];
-  for (int j0 = 0; j0 < ny_; j0 += kRealLanes) {
-    const int last = std::min(kRealLanes, ny_ - j0) - 1;
+  const auto row = [&](int n) { return delta.row(n % ny_, n / ny_); };
+  for (int n0 = first; n0 < last; n0 += kRealLanes) {
+    const int rows = std::min(kRealLanes, last - n0);
     RealLanes tile[kRealLanes];
     for (int i0 = 0; i0 < width; i0 += kRealLanes) {
-      for (int j = 0; j < kRealLanes; ++j)
-        tile[j] = *reinterpret_cast<const RealLanes*>(delta.row(j0 + std::min(j, last), k) + i0);
+      for (int n = 0; n < kRealLanes; ++n)
+        tile[n] = *reinterpret_cast<const RealLanes*>(row(n0 + std::min(n, rows - 1)) + i0);
       transpose(tile);
       std::copy_n(tile, kRealLanes, column + i0);
     }
@@ -72,7 +74,7 @@ void IncrementSmoother::smooth_x(FieldView delta, int k) const {
     for (int i0 = 0; i0 < width; i0 += kRealLanes) {
       std::copy_n(column + i0, kRealLanes, tile);
       transpose(tile);
-      for (int j = 0; j <= last; ++j) *reinterpret_cast<RealLanes*>(delta.row(j0 + j, k) + i0) = tile[j];
+      for (int n = 0; n < rows; ++n) *reinterpret_cast<RealLanes*>(row(n0 + n) + i0) = tile[n];
     }
   }
 }
@@ -121,9 +123,12 @@ void IncrementSmoother::smooth_z_and_add(FieldView delta, int j0, int j1, const 
 }
 
 void IncrementSmoother::apply(FieldView delta, const Base& base) const {
-  for_each_index(nz_, [&](int k) {
-    if (active_[1]) smooth_y(delta, k);
-    if (active_[0]) smooth_x(delta, k);
+  // Plane by plane, or as many of them at once as fill registers with rows
+  const int together = ny_ > 1 ? 1 : kRealLanes;
+  for_each_index((nz_ + together - 1) / together, [&](int n) {
+    const int k0 = n * together, k1 = std::min(k0 + together, nz_);
+    if (active_[1]) smooth_y(delta, k0);
+    if (active_[0]) smooth_x(delta, k0 * ny_, k1 * ny_);
   });
   for_each_index((ny_ + kRowsTogether - 1) / kRowsTogether, [&](int n) {
     smooth_z_and_add(delta, n * kRowsTogether, std::min((n + 1) * kRowsTogether, ny_), base);

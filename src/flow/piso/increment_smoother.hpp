@@ -39,7 +39,7 @@ class IncrementSmoother {
   struct Factors {
     std::vector<Real> inverse, below, above;
   };
-  void smooth_x(FieldView delta, int k) const;
+  void smooth_x(FieldView delta, int first, int last) const;
   void smooth_y(FieldView delta, int k) const;
   void smooth_z_and_add(FieldView delta, int j0, int j1, const Base& base) const;
 

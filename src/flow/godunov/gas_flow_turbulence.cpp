@@ -2,12 +2,12 @@
 #include <cmath>
 
 #include "base/parallel.hpp"
-#include "flow/godunov/solver.hpp"
+#include "flow/godunov/gas_flow.hpp"
 #include "flow/godunov/turbulence_kernel.hpp"
 
 namespace ejecta::godunov {
 
-void Solver::set_turbulence_constants() {
+void GasFlow::set_turbulence_constants() {
   if (options_.turbulence == TurbulenceModel::k_omega_sst) {
     using namespace k_omega_sst;
     diffusion_.sigma_k = kSigmaK2;
@@ -20,7 +20,7 @@ void Solver::set_turbulence_constants() {
   }
 }
 
-void Solver::measure_walls() {
+void GasFlow::measure_walls() {
   constexpr Real kNone = Real(1e3);  // m: no wall in sight
   for (int d = 0; d < 3; ++d) {
     const Axis& axis = grid_.axis(d);
@@ -36,7 +36,7 @@ void Solver::measure_walls() {
 }
 
 template <bool Sst, bool RoundJet>
-void Solver::turbulence(double dt) {
+void GasFlow::run_turbulence(double dt) {
   if (!started_) measure_walls();
   started_ = true;
   boundaries_.fill(w_);
@@ -50,7 +50,7 @@ void Solver::turbulence(double dt) {
                       f1_.view().origin,
                       {wall_distance_[0].data(), wall_distance_[1].data(), wall_distance_[2].data()},
                       gas_,
-                      {geometry_.axis(0), geometry_.axis(1), geometry_.axis(2)},
+                      axes(),
                       Real(options_.viscosity),
                       Real(dt),
                       options_.compressibility_correction});
@@ -61,8 +61,10 @@ void Solver::turbulence(double dt) {
   if constexpr (Sst) boundaries_.extend(f1_);
 }
 
-template void Solver::turbulence<true, false>(double);
-template void Solver::turbulence<false, true>(double);
-template void Solver::turbulence<false, false>(double);
+void GasFlow::advance_turbulence(double dt) {
+  if (!turbulent()) return;
+  if (options_.turbulence == TurbulenceModel::k_omega_sst) run_turbulence<true, false>(dt);
+  else options_.round_jet_correction ? run_turbulence<false, true>(dt) : run_turbulence<false, false>(dt);
+}
 
 }  // namespace ejecta::godunov

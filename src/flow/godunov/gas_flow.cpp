@@ -1,0 +1,123 @@
+#include "flow/godunov/gas_flow.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "base/error.hpp"
+#include "base/parallel.hpp"
+
+namespace ejecta::godunov {
+
+Block GasFlow::make_block(const Grid& grid) {
+  Block b;
+  for (Field& f : b) f = grid.make_field();
+  return b;
+}
+
+GasFlow::GasFlow(const Grid& grid, const Options& options)
+    : grid_(grid),
+      options_(options),
+      gas_(options.gas.gamma, options.gas.gas_constant, options.reference_pressure),
+      geometry_(grid),
+      boundaries_(grid, gas_),
+      u_(make_block(grid)),
+      w_(make_block(grid)),
+      next_(make_block(grid)),
+      flux_{make_block(grid), make_block(grid), make_block(grid)},
+      eddy_viscosity_(grid.make_field()),
+      f1_(grid.make_field()) {
+  const double cp = options.gas.specific_heat_pressure();
+  diffusion_.viscosity = Real(options.viscosity);
+  diffusion_.conductivity = Real(options.viscosity * cp / options.prandtl);
+  diffusion_.conductivity_t = Real(cp / options.prandtl_turbulent);
+  // Explicit diffusion is stable for dt <= h^2/(2 nu); heat diffuses fastest, with gamma/Pr of the momentum.
+  diffusion_.fastest = Real(2.0 * options.gas.gamma / options.prandtl);
+  diffusion_.fastest_t = Real(2.0 * options.gas.gamma / options.prandtl_turbulent);
+  set_turbulence_constants();
+}
+
+void GasFlow::set(int i, int j, int k, const GasState& s) {
+  const double p = s.pressure - options_.reference_pressure;
+  const std::array<double, kComponents> primitive{
+      s.density, s.velocity.x(), s.velocity.y(), s.velocity.z(), p, s.k, s.e};
+  const double energy = p / (options_.gas.gamma - 1.0) + 0.5 * s.density * s.velocity.squaredNorm();
+  for (std::size_t c = 0; c < kComponents; ++c) {
+    w_[c](i, j, k) = Real(primitive[c]);
+    u_[c](i, j, k) = Real(c == kRho ? s.density : c == kP ? energy : s.density * primitive[c]);
+  }
+}
+
+GasState GasFlow::at(int i, int j, int k) const {
+  const auto v = [&](int c) { return double(w_[static_cast<std::size_t>(c)](i, j, k)); };
+  return {v(kRho), {v(kU), v(kV), v(kW)}, v(kP) + options_.reference_pressure, v(kK), v(kE)};
+}
+
+void GasFlow::report_divergence() const {
+  for (int k = 0; k < grid_.nz(); ++k)
+    for (int j = 0; j < grid_.ny(); ++j)
+      for (int i = 0; i < grid_.nx(); ++i) {
+        const GasState s = at(i, j, k);
+        if (s.density > 0.0 && s.pressure > 0.0 && std::isfinite(s.velocity.sum())) continue;
+        const Vec3 x = grid_.centre(i, j, k);
+        throw DivergedError(
+            fmt::format("the gas at ({:.4g}, {:.4g}, {:.4g}) m has density {:.4g} kg/m3 and pressure {:.4g} "
+                        "Pa; try a smaller "
+                        "run.courant",
+                        x.x(), x.y(), x.z(), s.density, s.pressure));
+      }
+  throw DivergedError("no stable time step: a velocity or an eddy viscosity is no number");
+}
+
+double GasFlow::total(Component c) const {
+  const Metrics x = grid_.metrics(0), y = grid_.metrics(1), z = grid_.metrics(2);
+  const auto u = u_[static_cast<std::size_t>(c)].view();
+  const double around = grid_.axisymmetric() ? 2.0 * std::numbers::pi : 1.0;
+  return around * reduce_sum(grid_.range(), [=](int i, int j, int k) {
+           return double(u(i, j, k)) * double(x.volume[i]) * double(y.volume[j]) * double(z.volume[k]);
+         });
+}
+
+void GasFlow::add_to_ledger(double seconds) {
+  const double around = grid_.axisymmetric() ? 2.0 * std::numbers::pi : 1.0;
+  const std::array<Metrics, 3> m{grid_.metrics(0), grid_.metrics(1), grid_.metrics(2)};
+  for (int d = 0; d < 3; ++d) {
+    if (!grid_.active(d)) continue;
+    const int a = d == 0 ? 1 : 0, b = d == 2 ? 1 : 2;
+    const Block& f = flux(d);
+    for (int side = 0; side < 2; ++side) {
+      const int at = side ? grid_.n(d) : 0;
+      const double inward =
+          (side ? -1.0 : 1.0) * seconds * around * double(m[static_cast<std::size_t>(d)].area[at]);
+      for (int q = 0; q < grid_.n(b); ++q)
+        for (int p = 0; p < grid_.n(a); ++p) {
+          std::array<int, 3> cell{};
+          cell[static_cast<std::size_t>(d)] = at;
+          cell[static_cast<std::size_t>(a)] = p;
+          cell[static_cast<std::size_t>(b)] = q;
+          const double through = inward * double(m[static_cast<std::size_t>(a)].volume[p]) *
+                                 double(m[static_cast<std::size_t>(b)].volume[q]);
+          const auto value = [&](int c) {
+            return through * double(f[static_cast<std::size_t>(c)](cell[0], cell[1], cell[2]));
+          };
+          const double mass = value(kRho);
+          ledger_.mass += mass;
+          ledger_.mass_inward += mass > 0.0 ? mass : 0.0;
+          ledger_.energy += value(kP);
+          ledger_.momentum += Vec3(value(kU), value(kV), value(kW));
+        }
+    }
+  }
+}
+
+std::vector<Field*> GasFlow::state() {
+  std::vector<Field*> fields;
+  for (Field& f : u_) fields.push_back(&f);
+  for (Field& f : w_) fields.push_back(&f);
+  fields.push_back(&eddy_viscosity_);
+  fields.push_back(&f1_);
+  return fields;
+}
+
+}  // namespace ejecta::godunov

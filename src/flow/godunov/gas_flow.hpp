@@ -1,0 +1,130 @@
+#pragma once
+#include <array>
+#include <vector>
+
+#include "flow/godunov/boundary.hpp"
+#include "flow/godunov/flux_kernel.hpp"
+#include "flow/godunov/geometry.hpp"
+
+namespace ejecta::godunov {
+
+/// What the compressible solver is asked to solve.
+struct Options {
+  Gas gas;
+  double reference_pressure = 0.0;  ///< Pa, that of the gas at rest (see state.hpp)
+  double viscosity = 0.0;           ///< Pa s, dynamic; 0: inviscid
+  double prandtl = 0.71, prandtl_turbulent = 0.9;
+  TurbulenceModel turbulence = TurbulenceModel::laminar;
+  bool round_jet_correction = true, compressibility_correction = true;
+  bool keep_ledger = false;  ///< sum up what crosses the boundaries
+  int stages = 2;            ///< Godunov. 2: Heun's method, 3: third order (both strong-stability preserving)
+};
+
+/// What has entered through the boundaries since the start (axisymmetric: the full circle). Momentum counts
+/// the pressure from the reference.
+struct BoundaryLedger {
+  double mass = 0.0;         ///< kg
+  double mass_inward = 0.0;  ///< kg, inflow alone
+  double energy = 0.0;       ///< J
+  Vec3 momentum{0, 0, 0};    ///< N s
+};
+
+/// Compressible flow of an ideal gas in conservative finite volumes, on Cartesian and axisymmetric grids: the
+/// state, its boundaries, fluxes, sources of turbulence and ledger, which every solver shares. A solver says
+/// how far and how a step goes.
+class GasFlow {
+ public:
+  virtual ~GasFlow() = default;
+  GasFlow(const GasFlow&) = delete;
+  GasFlow& operator=(const GasFlow&) = delete;
+
+  Boundaries& boundaries() { return boundaries_; }
+  const Grid& grid() const { return grid_; }
+  const Options& options() const { return options_; }
+
+  /// Initial state of a cell. `e` is epsilon or omega.
+  void set(int i, int j, int k, const GasState& state);
+  GasState at(int i, int j, int k) const;
+
+  /// Largest stable step for a Courant number, s. Throws DivergedError with place and state when a cell holds
+  /// no number.
+  virtual double stable_dt(double courant) = 0;
+  /// One step. Allocates nothing.
+  virtual void advance(double dt) = 0;
+
+  /// Integral of a conserved component over the box (axisymmetric: the full circle).
+  double total(Component c) const;
+  /// Primitive variables with ghosts, pressure relative to the reference.
+  const Block& primitive() const { return w_; }
+  /// Fluxes per area of the last stage through the lower faces along x (0), y (1) or z (2), pressure counted
+  /// from the reference.
+  const Block& flux(int axis) const { return flux_[static_cast<std::size_t>(axis)]; }
+  const Field& eddy_viscosity() const { return eddy_viscosity_; }  ///< Pa s
+  void keep_ledger() { options_.keep_ledger = true; }
+  const BoundaryLedger& ledger() const { return ledger_; }
+  BoundaryLedger& ledger() { return ledger_; }
+  /// Everything a resume needs besides the ledger.
+  virtual std::vector<Field*> state();
+
+ protected:
+  GasFlow(const Grid& grid, const Options& options);
+  static Block make_block(const Grid& grid);
+  std::array<AxisLengths, 3> axes() const {
+    return {geometry_.axis(0), geometry_.axis(1), geometry_.axis(2)};
+  }
+  bool turbulent() const { return options_.turbulence != TurbulenceModel::laminar; }
+  /// visit(Physics<...>{}) with what this flow carries.
+  template <class Visit>
+  void with_physics(const Visit& visit) const {
+    const bool across = grid_.active(1);
+    if (turbulent()) across ? visit(Physics<true, true, true>{}) : visit(Physics<true, true, false>{});
+    else if (options_.viscosity > 0.0)
+      across ? visit(Physics<true, false, true>{}) : visit(Physics<true, false, false>{});
+    else across ? visit(Physics<false, false, true>{}) : visit(Physics<false, false, false>{});
+  }
+  /// flux_ = what `convection` and diffusion carry through every face, from primitive variables with ghosts.
+  template <class P, class Convection>
+  void fluxes(const Block& primitive, const Convection& convection);
+  /// k, e and the eddy viscosity after their sources over dt.
+  void advance_turbulence(double dt);
+  void add_to_ledger(double seconds);
+  /// Throws DivergedError that names a cell which is no gas.
+  [[noreturn]] void report_divergence() const;
+
+  const Grid& grid_;
+  Options options_;
+  GasConstants gas_;
+  Diffusion diffusion_;
+  Geometry geometry_;
+  Boundaries boundaries_;
+  Block u_, w_, next_;  ///< conserved; primitive; scratch of the primitive ones
+  std::array<Block, 3> flux_;
+  Field eddy_viscosity_, f1_;
+
+ private:
+  template <bool Sst, bool RoundJet>
+  void run_turbulence(double dt);
+  void set_turbulence_constants();
+  void measure_walls();
+  std::array<std::vector<Real>, 3> wall_distance_;
+  bool started_ = false;
+  BoundaryLedger ledger_;
+};
+
+template <class P, class Convection>
+void GasFlow::fluxes(const Block& primitive, const Convection& convection) {
+  const auto w = view_block<const Real>(primitive);
+  const Real *mut = eddy_viscosity_.view().origin, *f1 = f1_.view().origin;
+  const auto sweep = [&](auto axis) {
+    constexpr int d = decltype(axis)::value;
+    Range3 faces = grid_.range();
+    (d == 0 ? faces.i1 : d == 1 ? faces.j1 : faces.k1) += 1;
+    for_each_cell(faces, FluxKernel<d, P, Convection>{w, view_block<Real>(flux_[d]), mut, f1, gas_,
+                                                      diffusion_, axes(), convection});
+  };
+  if (grid_.active(0)) sweep(std::integral_constant<int, 0>{});
+  if constexpr (P::across) sweep(std::integral_constant<int, 1>{});
+  if (grid_.active(2)) sweep(std::integral_constant<int, 2>{});
+}
+
+}  // namespace ejecta::godunov

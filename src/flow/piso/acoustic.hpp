@@ -1,0 +1,55 @@
+#pragma once
+#include "flow/godunov/boundary.hpp"
+#include "flow/godunov/geometry.hpp"
+
+namespace ejecta::piso {
+
+using namespace godunov;
+
+/// The implicit part of a step of the compressible PISO. From the middle of the step as flow and friction
+/// alone make it, velocities q of the faces and the change dp of the pressure such that
+///
+///   q  = mean(u) - dt/2 grad p / rho - dt grad dp / rho,      dp = -dt K div q,      K = gamma p_ref +
+///   (gamma - 1) p'
+///
+/// The flow is centred in the step, sound is implicit (Euler backward in its own change alone): where
+/// pressure only travels with the flow dp is zero and nothing is damped. On a boundary q = q0 + admittance
+/// dp: none where the velocity is given, half a cell of gas where the pressure is, 1/(rho c) where sound
+/// leaves.
+class Acoustic {
+ public:
+  Acoustic(const Grid& grid, const GasConstants& gas);
+
+  /// `middle`: primitive variables with ghosts. Conjugate gradients from the change of the step before.
+  /// Allocates nothing.
+  void solve(const std::array<AxisLengths, 3>& axis, const Boundaries& boundaries, const Block& middle,
+             double dt);
+
+  /// Ghost pressures of the finished middle on transmissive faces, such that the mean with the cell inside is
+  /// the pressure of a wave that leaves.
+  void let_waves_out(const Boundaries& boundaries, Block& middle) const;
+
+  const Field& velocity(int axis) const { return velocity_[static_cast<std::size_t>(axis)]; }  ///< m/s
+  const Field& change() const { return change_; }  ///< dp, Pa; one layer of ghosts
+  Field& change() { return change_; }
+  int iterations() const { return iterations_; }  ///< of the last solve
+
+ private:
+  void measure_faces(const std::array<AxisLengths, 3>& axis, const Block& middle, Real dt);
+  void open_boundaries(const std::array<AxisLengths, 3>& axis, const Boundaries& boundaries,
+                       const Block& middle);
+  double measure_cells(const std::array<AxisLengths, 3>& axis, const Block& middle, Real dt);
+  void conjugate_gradients(const Boundaries& boundaries, double enough);
+  void correct_faces(const std::array<AxisLengths, 3>& axis);
+  template <class Visit>
+  void for_each_boundary_cell(const Boundaries& boundaries, const Visit& visit) const;
+
+  const Grid& grid_;
+  GasConstants gas_;
+  std::array<Field, 3> velocity_, conductance_;  ///< m/s; m3/s/Pa
+  std::array<std::vector<Real>, 6> admittance_;  ///< per cell of a face of the box, m3/s/Pa
+  Field diagonal_, change_, residual_, search_, product_;
+  int iterations_ = 0;
+};
+
+}  // namespace ejecta::piso

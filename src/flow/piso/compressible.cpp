@@ -1,0 +1,169 @@
+#include "flow/piso/compressible.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/parallel.hpp"
+#include "flow/godunov/update_kernel.hpp"
+#include "flow/piso/carried.hpp"
+
+namespace ejecta::piso {
+namespace {
+
+using namespace godunov;
+
+/// Inverse of the convective step of a cell, of its explicit diffusive step, and its viscosity (m2/s). The
+/// speed on an axis is the largest in the cell and its two neighbours. What the pressure adds within the
+/// step: dt (r + g dt) = 1 with r = sum |u|/h and g = sum |grad p|/(rho h).
+struct RateKernel {
+  BlockView<const Real> w;
+  const Real* eddy_viscosity;
+  Diffusion diffusion;
+  std::array<AxisLengths, 3> axis;
+  std::array<bool, 3> active;
+
+  EJECTA_KERNEL void operator()(int i, int j, int k, Real* values) const {
+    const std::ptrdiff_t o = w.offset(i, j, k);
+    const std::array<std::ptrdiff_t, 3> stride{1, w.sy, w.sz};
+    const std::array<int, 3> index{i, j, k};
+    const Real inv_rho = 1 / w.at(kRho, o);
+    Real r = 0, g = 0, squares = 0;
+    for (std::size_t d = 0; d < 3; ++d) {
+      if (!active[d]) continue;
+      const std::ptrdiff_t s = stride[d];
+      const Metrics& m = axis[d].metrics;
+      const int at = index[d];
+      const Real h = m.inv_width[at];
+      const Real *u = w.origin[kU + d] + o, *p = w.origin[kP] + o;
+      const Real before = std::abs(u[-s]), here = std::abs(u[0]), after = std::abs(u[s]);
+      const Real beside = before > after ? before : after;
+      const Real low = std::abs(p[0] - p[-s]) * m.inv_distance[at],
+                 high = std::abs(p[s] - p[0]) * m.inv_distance[at + 1];
+      r += (here > beside ? here : beside) * h;
+      g += (low > high ? low : high) * h;
+      squares += h * h;
+    }
+    const Real nu = diffusion.viscosity * inv_rho, nu_t = eddy_viscosity[o] * inv_rho;
+    values[0] = Real(0.5) * (r + std::sqrt(r * r + 4 * g * inv_rho));
+    values[1] = (diffusion.fastest * nu + diffusion.fastest_t * nu_t) * squares;
+    values[2] = Real(0.5) * (diffusion.fastest * nu + diffusion.fastest_t * nu_t);
+  }
+};
+
+/// What a step adds to a conserved component. That of the radial momentum is divided by 1 + 2 nu dt/r^2: the
+/// stress along the hoop of the cells on the axis is far beyond its explicit limit, and no smoothing along
+/// the axes sees it.
+struct IncrementKernel {
+  ConstFieldView now, before, rho, eddy_viscosity;
+  FieldView increment;
+  const Real* inv_radius;
+  Real hoop;  ///< 2 dt for the radial momentum, else 0, s
+  Real viscosity;
+  EJECTA_KERNEL void operator()(int i, int j, int k) const {
+    const Real nu = (viscosity + eddy_viscosity(i, j, k)) / rho(i, j, k);
+    increment(i, j, k) = (now(i, j, k) - before(i, j, k)) / (1 + hoop * nu * inv_radius[i] * inv_radius[i]);
+  }
+};
+
+template <class P>
+struct PrimitiveKernel {
+  BlockView<const Real> u;
+  BlockView<Real> w;
+  GasConstants gas;
+  EJECTA_KERNEL void operator()(int i, int j, int k) const {
+    const std::ptrdiff_t o = u.offset(i, j, k);
+    const Real rho = u.at(kRho, o);
+    Real mv = 0;
+    if constexpr (P::across) mv = u.at(kV, o);
+    store_primitive<P>(w, o, gas, rho, u.at(kU, o), mv, u.at(kW, o), u.at(kP, o));
+    if constexpr (P::turbulent) {
+      w.at(kK, o) = u.at(kK, o) / rho;
+      w.at(kE, o) = u.at(kE, o) / rho;
+    }
+  }
+};
+
+}  // namespace
+
+Compressible::Compressible(const Grid& grid, const Options& options)
+    : GasFlow(grid, options),
+      acoustic_(grid, gas_),
+      smoother_(grid),
+      start_(make_block(grid)),
+      middle_(make_block(grid)) {}
+
+double Compressible::stable_dt(double courant) {
+  boundaries_.fill(w_);
+  const auto [flow, diffusive, nu] =
+      reduce_max<3>(grid_.range(), RateKernel{view_block<const Real>(w_),
+                                              eddy_viscosity_.view().origin,
+                                              diffusion_,
+                                              axes(),
+                                              {grid_.active(0), grid_.active(1), grid_.active(2)}});
+  const double both = double(flow) + double(diffusive);
+  if (!std::isfinite(both)) report_divergence();
+  largest_nu_ = double(nu);
+  explicit_dt_ = 1.0 / std::max(both, 1e-30);
+  return courant / std::max(turbulent() ? double(flow) : both, 1e-30);
+}
+
+/// All conserved components by the same operator: were the density left out, the velocity of gas of uneven
+/// temperature would be smeared against its mass, and heat would answer the density too late.
+template <class P>
+void Compressible::smooth_increments(double dt) {
+  smoother_.prepare(0.5 * dt * largest_nu_);
+  Field& increment = next_[kRho];
+  for (const int c : {kRho, kU, kV, kW, kP, kK, kE}) {
+    if ((c == kV && !P::across) || ((c == kK || c == kE) && !P::turbulent)) continue;
+    Field &u = u_[static_cast<std::size_t>(c)], &start = start_[static_cast<std::size_t>(c)];
+    for_each_cell(grid_.range(),
+                  IncrementKernel{u.view(), start.view(), u_[kRho].view(), eddy_viscosity_.view(),
+                                  increment.view(), geometry_.axis(0).inv_radius_centre,
+                                  c == kU ? Real(2 * dt) : Real(0), Real(options_.viscosity)});
+    IncrementSmoother::Base base{start.view(), Real(1), start.view(), Real(0)};
+    if (c == kK || c == kE) base.least = 0;
+    smoother_.apply(increment.view(), base);
+    std::swap(increment, u);
+  }
+  for_each_cell(grid_.range(), PrimitiveKernel<P>{view_block<const Real>(u_), view_block<Real>(w_), gas_});
+}
+
+template <class P>
+void Compressible::step(double dt) {
+  for_each_cell(grid_.range(), PredictorKernel<P>{view_block<const Real>(w_), view_block<Real>(middle_),
+                                                  eddy_viscosity_.view().origin, f1_.view().origin,
+                                                  diffusion_, axes(), Real(dt)});
+  boundaries_.fill(middle_);
+  acoustic_.solve(axes(), boundaries_, middle_, dt);
+  for_each_cell(grid_.range(), PressureKernel<P>{view_block<Real>(middle_), next_[kP].view().origin,
+                                                 acoustic_.change().view().origin, gas_, axes(), Real(dt)});
+  std::swap(middle_[kP], next_[kP]);
+  boundaries_.fill(middle_);
+  acoustic_.let_waves_out(boundaries_, middle_);
+  const auto q = [&](int d) { return acoustic_.velocity(d).view().origin; };
+  fluxes<P>(middle_, CarriedConvection{{q(0), q(1), q(2)}});
+  if (options_.keep_ledger) add_to_ledger(dt);
+  std::swap(u_, start_);
+  for_each_cell(grid_.range(),
+                UpdateKernel<P>{view_block<Real>(u_), view_block<Real>(next_),
+                                view_block<const Real>(middle_), view_block<const Real>(start_),
+                                view_block<const Real>(start_), view_block<const Real>(flux_[0]),
+                                view_block<const Real>(flux_[1]), view_block<const Real>(flux_[2]),
+                                eddy_viscosity_.view().origin, gas_, diffusion_, axes(), Real(dt), Real(0)});
+  std::swap(w_, next_);
+  if (turbulent() && dt > explicit_dt_) smooth_increments<P>(dt);
+}
+
+void Compressible::advance(double dt) {
+  advance_turbulence(dt);
+  boundaries_.fill(w_);
+  with_physics([&](auto physics) { step<decltype(physics)>(dt); });
+}
+
+std::vector<Field*> Compressible::state() {
+  std::vector<Field*> fields = GasFlow::state();
+  fields.push_back(&acoustic_.change());
+  return fields;
+}
+
+}  // namespace ejecta::piso

@@ -1,0 +1,41 @@
+#pragma once
+#include "flow/godunov/gas_flow.hpp"
+#include "flow/piso/acoustic.hpp"
+#include "flow/piso/increment_smoother.hpp"
+
+namespace ejecta::piso {
+
+/// Compressible flow at the pace of the flow, for Mach numbers up to about 0.8: a step is limited by |u|
+/// alone. One step, conservative and centred in time:
+///
+///   w*      = w - dt/2 u grad w + diffusion         Hancock's predictor, without the pressure
+///   q, dp   = implicit in sound                     one Helmholtz equation (Acoustic)
+///   w_mid   = w* - dt/2 grad(p* + dp)/rho
+///   U      += -dt div(q U_up + pressure - viscous)  the fluxes of w_mid
+///
+/// Splitting of the pressure from what is carried: Kwatra et al. 2009 (J. Comput. Phys. 228:4146); predictor
+/// and one implicit solve for the velocities of the faces: Bell, Colella & Glaz 1989 (J. Comput. Phys.
+/// 85:257).
+class Compressible : public godunov::GasFlow {
+ public:
+  Compressible(const Grid& grid, const godunov::Options& options);
+
+  /// courant / max over cells of sum over axes of |u|/h, with the speed that the present pressure can add;
+  /// laminar: and 2 nu/h^2
+  double stable_dt(double courant) override;
+  void advance(double dt) override;
+  std::vector<Field*> state() override;
+  int iterations() const { return acoustic_.iterations(); }  ///< of the last step's pressure equation
+
+ private:
+  template <class P>
+  void step(double dt);
+  template <class P>
+  void smooth_increments(double dt);
+  Acoustic acoustic_;
+  IncrementSmoother smoother_;
+  godunov::Block start_, middle_;
+  double largest_nu_ = 0.0, explicit_dt_ = 1e300;  ///< m2/s, s: of the last stable_dt()
+};
+
+}  // namespace ejecta::piso
