@@ -11,6 +11,17 @@ namespace {
 
 std::size_t padded(std::size_t pairs) { return (pairs + kLanes - 1) / kLanes * kLanes; }
 
+/// count times value. assign() takes just the memory it needs: a list whose length wavers would ask for more
+/// at every new high, so there is room for half as many again.
+template <class T>
+void refill(std::vector<T>& v, std::size_t count, const T& value) {
+  if (count > v.capacity()) {
+    v.clear();
+    v.reserve(count + count / 2);
+  }
+  v.assign(count, value);
+}
+
 /// A plane as the lanes read it: the normal for the centre, the offset for the radius.
 BallRow plane_row(const Wall& wall) {
   BallRow row;
@@ -36,8 +47,8 @@ void BallContacts::index_pairs(int balls) {
     entries_[at(cursor_[at(a_[at(n)])]++)] = 2 * n;
     if (n < planes_from_) entries_[at(cursor_[at(b_[at(n)])]++)] = 2 * n + 1;
   }
-  rows_.assign(a_.size(), PairRow{});
-  for (auto& m : moments_) m.assign(a_.size(), 0.0);
+  refill(rows_, a_.size(), PairRow{});
+  for (auto& m : moments_) refill(m, a_.size(), 0.0);
 }
 
 void BallContacts::set_pairs(Pairs balls, Pairs planes, std::span<const Wall> walls, int ball_count) {
@@ -54,10 +65,10 @@ void BallContacts::arrange(Pairs balls, Pairs planes, int ball_count) {
   const std::size_t last_planes_from = at(planes_from_);
   planes_from_ = static_cast<int>(padded(balls.size()));
   const std::size_t total = at(planes_from_) + padded(planes.size());
-  a_.assign(total, ball_count);
-  b_.assign(total, static_cast<int>(planes_.size()) - 1);
+  refill(a_, total, ball_count);
+  refill(b_, total, static_cast<int>(planes_.size()) - 1);
   std::fill_n(b_.begin(), planes_from_, ball_count);
-  for (auto& h : history_) h.assign(total, 0.0);
+  for (auto& h : history_) refill(h, total, 0.0);
   const auto put = [&](Pairs pairs, std::size_t from, std::size_t old, std::size_t old_end) {
     for (std::size_t n = 0; n < pairs.size(); ++n) {
       std::tie(a_[from + n], b_[from + n]) = pairs[n];

@@ -23,11 +23,13 @@ void NeighbourSearch::sort_into_cells(const std::vector<Item>& items, double edg
   const double most = 8.0 * static_cast<double>(items.size()) + 64.0;
   while ((size / edge).array().floor().cwiseMin(1e9).unaryExpr([](double v) { return v + 1; }).prod() > most)
     edge *= 1.3;
+  for (auto* v : {&first_, &cursor_}) v->reserve(static_cast<std::size_t>(most) + 1);
   lattice_.origin = low;
   lattice_.edge = edge;
   for (int c = 0; c < 3; ++c) lattice_.n[c] = static_cast<int>(size[c] / edge) + 1;
 
-  first_.assign(static_cast<std::size_t>(lattice_.n[0]) * lattice_.n[1] * lattice_.n[2] + 1, 0);
+  const std::size_t cells = static_cast<std::size_t>(lattice_.n[0]) * lattice_.n[1] * lattice_.n[2];
+  first_.assign(cells + 1, 0);
   cell_of_.resize(items.size());
   for (std::size_t n = 0; n < items.size(); ++n) {
     const Vec3 at = (items[n].centre - low) / edge;
