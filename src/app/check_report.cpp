@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 
 #include "app/forecast.hpp"
 #include "base/units.hpp"
 #include "case/extent.hpp"
 #include "case/words.hpp"
+#include "dem/body.hpp"
 
 namespace ejecta {
 namespace {
@@ -58,11 +60,20 @@ std::string flow_part(const Case& c, double bandwidth) {
   return text;
 }
 
+/// What a surface from a file touches as.
+std::string parts_words(const Case& c, const BodySpec& b) {
+  const Shape shape = make_shape(b, std::filesystem::path(c.path).parent_path());
+  if (!shape.balls().empty()) return fmt::format(", as {} spheres", shape.balls().size());
+  return fmt::format(", as {} convex parts, volume {:+.3f} %", shape.polytopes().size(),
+                     100 * (shape.parts_volume() / shape.mass_properties().volume - 1));
+}
+
 std::string body_part(const Case& c, const BodySpec& b) {
   std::string text = fmt::format("  body         \"{}\", {}, {}", b.name, word(b.shape), word(b.motion));
   if (c.flow.solver != FlowSolver::none && smallest_feature(b) > 0.0)
     text += fmt::format(": {:.1f} cells across its smallest feature ({})", cells_across(c, b),
                         length_words(smallest_feature(b)));
+  if (!b.file.empty() || !b.files.empty()) text += parts_words(c, b);
   return text + "\n";
 }
 

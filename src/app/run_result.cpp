@@ -22,6 +22,11 @@ Json body_json(const CoupledModel& m, std::size_t b) {
   Json j;
   j["name"] = body.name;
   j["mass_kg"] = body.mass;
+  if (!c.bodies[b].file.empty() || !c.bodies[b].files.empty()) {
+    j["parts"] = body.shape.balls().size() + body.shape.polytopes().size();
+    if (body.shape.balls().empty())
+      j["volume_of_parts_over_solid"] = body.shape.parts_volume() / body.shape.mass_properties().volume;
+  }
   j["final_position_m"] = vector_json(body.position);
   j["final_velocity_m_s"] = vector_json(body.velocity);
   j["final_spin_rad_s"] = vector_json(body.angular_velocity);

@@ -190,13 +190,13 @@ struct BodySpec {
   double diameter = 0.0;                       ///< sphere
   Vec3 size{0, 0, 0};                          ///< box, superquadric, cluster: full edge lengths, m
   std::vector<std::array<double, 4>> spheres;  ///< multisphere: x, y, z, radius in body axes
-  std::array<int, 3> cluster{3, 3, 3};  ///< spheres along each edge of the paper's cluster, inside `size`
-  double sphere_diameter = 0.0;         ///< cluster
-  std::vector<Vec3> vertices;           ///< polyhedron: convex hull of these
-  std::string file;                     ///< mesh: STL; multisphere: STL to fit spheres to
-  std::vector<std::string> files;       ///< mesh: STL of each convex part
-  double fit_error = 0.0;  ///< m, multisphere: largest distance of the spheres' surface to `file`
-  double scale = 1.0;      ///< of the mesh
+  std::array<int, 3> cluster{3, 3, 3};    ///< spheres along each edge of the paper's cluster, inside `size`
+  double sphere_diameter = 0.0;           ///< cluster
+  std::vector<Vec3> vertices;             ///< polyhedron: convex hull of these
+  std::string file;                       ///< mesh: STL; multisphere: STL to fit spheres to
+  std::vector<std::string> files;         ///< mesh: STL of each convex part
+  double fit_error = 0.0;                 ///< m, largest distance of what touches to the surface in `file`
+  double scale = 1.0;                     ///< of the mesh
   std::array<double, 2> exponents{2, 2};  ///< superquadric
   std::string material;
   std::optional<double> density;  ///< kg/m3, else the material's

@@ -94,12 +94,14 @@ std::vector<Key> keys(BodySpec& s) {
        .example = "\"lump.stl\""},
       {.name = "files",
        .slot = &s.files,
-       .help = "Mesh that is not convex: STL of each convex part, instead of `file`",
+       .help = "Mesh of several STL surfaces that may touch but not share space, instead of `file`",
        .unset = "none",
        .example = R"(["head.stl", "tail.stl"])"},
       {"fit_error", &s.fit_error, length, not_negative,
-       "Multisphere: spheres are fitted into `file` until no point of its surface lies farther from them", "",
-       "needed to fit spheres", false, "\"0.5 mm\""},
+       "No point of the surface in `file` lies farther below that of the spheres fitted into it "
+       "(multisphere) or of "
+       "the convex parts it is divided into (mesh)",
+       "", "exactly divided (mesh); needed to fit spheres", false, "\"0.5 mm\""},
       {"scale", &s.scale, none, positive, "Mesh: factor from the units of the file to metres (0.001 for mm)",
        ""},
       {"exponents", &s.exponents, none, positive,

@@ -44,11 +44,11 @@ Shape make_shape(const BodySpec& spec, const std::string& directory) {
       const std::filesystem::path folder(directory);
       if (spec.files.empty()) {
         const std::string path = (folder / spec.file).string();
-        return make_mesh(read_stl(path, spec.scale), path);
+        return make_mesh(read_stl(path, spec.scale), path, spec.fit_error);
       }
       TriangleMesh all;
       for (const std::string& file : spec.files) add(all, read_stl((folder / file).string(), spec.scale));
-      return make_mesh(all, fmt::format("{}", fmt::join(spec.files, " + ")));
+      return make_mesh(all, fmt::format("{}", fmt::join(spec.files, " + ")), spec.fit_error);
     }
     case ShapeKind::superquadric:
       return make_superquadric(spec.size, spec.exponents[0], spec.exponents[1]);

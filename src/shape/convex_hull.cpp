@@ -14,9 +14,25 @@ namespace {
 
 constexpr double kCoplanar = 1e-9;  // of the size: heights below it are none
 
+__extension__ using Quad = __float128;
+
+/// Whether d lies above the triangle a, b, c. The hull closes only if such answers agree with each other, so
+/// where doubles cannot tell, more digits do. (A thing of 1e-30 is round-off of 113 bits: on the triangle.)
+bool is_above(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
+  const Vec3 u = b - a, v = c - a, w = d - a;
+  const double volume = u.cross(v).dot(w);
+  const double most = u.cwiseAbs().sum() * v.cwiseAbs().sum() * w.cwiseAbs().sum();
+  if (std::abs(volume) > 1e-14 * most) return volume > 0;
+  const auto minus = [](double p, double q) { return static_cast<Quad>(p) - static_cast<Quad>(q); };
+  const Quad u0 = minus(b[0], a[0]), u1 = minus(b[1], a[1]), u2 = minus(b[2], a[2]);
+  const Quad v0 = minus(c[0], a[0]), v1 = minus(c[1], a[1]), v2 = minus(c[2], a[2]);
+  const Quad w0 = minus(d[0], a[0]), w1 = minus(d[1], a[1]), w2 = minus(d[2], a[2]);
+  return (u1 * v2 - u2 * v1) * w0 + (u2 * v0 - u0 * v2) * w1 + (u0 * v1 - u1 * v0) * w2 > 1e-30 * most;
+}
+
 struct Triangle {
   std::array<int, 3> corners;
-  Vec3 normal;  // unit, outward
+  Vec3 normal;  // outward; its length is twice the area
 };
 
 struct Hull {
@@ -25,10 +41,10 @@ struct Hull {
   std::vector<Triangle> triangles;
 
   const Vec3& at(int n) const { return points[static_cast<std::size_t>(n)]; }
-  void add(int a, int b, int c) {
-    triangles.push_back({{a, b, c}, (at(b) - at(a)).cross(at(c) - at(a)).normalized()});
+  void add(int a, int b, int c) { triangles.push_back({{a, b, c}, (at(b) - at(a)).cross(at(c) - at(a))}); }
+  bool sees(int point, const Triangle& t) const {
+    return is_above(at(t.corners[0]), at(t.corners[1]), at(t.corners[2]), at(point));
   }
-  double height(const Triangle& t, int point) const { return t.normal.dot(at(point) - at(t.corners[0])); }
 };
 
 template <class Measure>
@@ -58,10 +74,13 @@ void first_tetrahedron(Hull& hull) {
 
 /// Replaces the triangles that `point` sees by a fan from it to their rim.
 void add_point(Hull& hull, int point) {
+  if (std::none_of(hull.triangles.begin(), hull.triangles.end(),
+                   [&](const Triangle& t) { return hull.sees(point, t); }))
+    return;
   std::set<std::pair<int, int>> rim;
   std::vector<Triangle> kept;
   for (const Triangle& t : hull.triangles) {
-    if (hull.height(t, point) <= hull.tolerance) {
+    if (!hull.sees(point, t)) {
       kept.push_back(t);
       continue;
     }
@@ -91,15 +110,19 @@ std::vector<int> walk(const Rim& rim) {
   return at == corners.front() && corners.size() == next.size() ? corners : std::vector<int>();
 }
 
-/// Triangles of one plane joined to a face, where they have one rim.
-Polytope merge_faces(const Hull& hull) {
+/// Triangles of one plane joined to a face, where they have one rim. The largest give the planes: the normal
+/// of a sliver is mostly round-off.
+Polytope merge_faces(Hull& hull) {
+  std::stable_sort(hull.triangles.begin(), hull.triangles.end(), [](const Triangle& a, const Triangle& b) {
+    return a.normal.squaredNorm() > b.normal.squaredNorm();
+  });
   Polytope result;
   std::map<int, int> renamed;
   std::vector<bool> used(hull.triangles.size(), false);
   for (std::size_t n = 0; n < hull.triangles.size(); ++n) {
     if (used[n]) continue;
     const Triangle& own = hull.triangles[n];
-    const Vec3 normal = own.normal;
+    const Vec3 normal = own.normal.normalized();
     const double offset = normal.dot(hull.at(own.corners[0]));
     std::vector<std::size_t> group;
     Rim rim;
@@ -148,7 +171,8 @@ Polytope convex_hull(const std::vector<Vec3>& points) {
   result.centre = 0.5 * (low + high);
   for (const Vec3& v : result.vertices) result.radius = std::max(result.radius, (v - result.centre).norm());
   for (const Polytope::Face& f : result.faces)
-    if (!f.normal.allFinite())
+    if (!f.normal.allFinite() ||
+        f.normal.dot(support_polytope(result, f.normal)) > f.offset + 1e-6 * result.radius)
       throw InputError("the points are too nearly in a plane or line to span a solid");
   return result;
 }

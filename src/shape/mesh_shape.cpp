@@ -4,12 +4,16 @@
 #include <numeric>
 
 #include "base/error.hpp"
+#include "shape/convex_parts.hpp"
 #include "shape/polytope_shape.hpp"
 #include "shape/principal_axes.hpp"
 #include "shape/shape_data.hpp"
 
 namespace ejecta {
 namespace {
+
+constexpr double kRound = 1e-5;  // of the volume: what the 32-bit corners of an STL file may take or add
+constexpr double kCrumb = 0.05;  // of the largest part: smaller ones are no feature of the solid
 
 /// Vertices of each piece of the mesh that hangs together.
 std::vector<std::vector<int>> pieces_of(const TriangleMesh& mesh) {
@@ -35,22 +39,25 @@ std::vector<std::vector<int>> pieces_of(const TriangleMesh& mesh) {
   return pieces;
 }
 
-/// The hull of a piece, which must not lie above the piece anywhere.
-Polytope convex_piece(const TriangleMesh& mesh, const std::vector<int>& piece, const std::string& name) {
-  std::vector<Vec3> points;
-  for (const int v : piece) points.push_back(mesh.vertices[static_cast<std::size_t>(v)]);
-  const Polytope hull = convex_hull(points);
-  for (const int v : piece) {
-    const Vec3& p = mesh.vertices[static_cast<std::size_t>(v)];
-    const double depth = -nearest_on_polytope(hull, p).distance;
-    if (depth > 1e-6 * hull.radius)
-      throw InputError(fmt::format(
-          "{}: the piece is not convex: its vertex ({:.6g}, {:.6g}, {:.6g}) m lies {:.3g} m below "
-          "the convex hull; divide it into closed convex pieces, or use the hull (shape = "
-          "\"polyhedron\")",
-          name, p.x(), p.y(), p.z(), depth));
+/// The hulls of pieces that are convex; nothing if one of them is not.
+std::vector<Polytope> hulls_of(const TriangleMesh& mesh, const std::vector<std::vector<int>>& pieces) {
+  std::vector<Polytope> hulls;
+  for (const auto& piece : pieces) {
+    std::vector<Vec3> points;
+    for (const int v : piece) points.push_back(mesh.vertices[static_cast<std::size_t>(v)]);
+    hulls.push_back(convex_hull(points));
+    const Polytope& hull = hulls.back();
+    const bool convex = std::all_of(points.begin(), points.end(), [&](const Vec3& p) {
+      return -nearest_on_polytope(hull, p).distance <= 1e-6 * hull.radius;
+    });
+    if (!convex) return {};
   }
-  return hull;
+  return hulls;
+}
+
+double volume_of(const std::vector<Polytope>& parts) {
+  return std::accumulate(parts.begin(), parts.end(), 0.0,
+                         [](double sum, const Polytope& p) { return sum + volume_polytope(p); });
 }
 
 /// Parts that share space would be counted twice. (That no corner of one lies inside another is not all that
@@ -81,9 +88,12 @@ Shape make_polytope_shape(std::vector<Polytope> parts, TriangleMesh surface, con
     v = to_body(data->frame, v);
     data->bounding_radius = std::max(data->bounding_radius, v.norm());
   }
-  data->smallest_feature = width_polytope(parts.front());
+  data->smallest_feature = 2 * data->bounding_radius;
+  double largest = 0.0;
+  for (const Polytope& p : parts) largest = std::max(largest, volume_polytope(p));
   for (const Polytope& p : parts)
-    data->smallest_feature = std::min(data->smallest_feature, width_polytope(p));
+    if (volume_polytope(p) > kCrumb * largest)
+      data->smallest_feature = std::min(data->smallest_feature, width_polytope(p));
   data->geometry = PolytopesGeometry{std::move(parts), std::move(surface)};
   return Shape(data);
 }
@@ -95,22 +105,19 @@ Shape make_polyhedron(const std::vector<Vec3>& points) {
   return make_polytope_shape({std::move(hull)}, std::move(surface), mass);
 }
 
-Shape make_mesh(const TriangleMesh& mesh, const std::string& name) {
+Shape make_mesh(const TriangleMesh& mesh, const std::string& name, double fit_error) {
   require_closed(mesh, name);
-  std::vector<Polytope> parts;
-  double hulls = 0.0;
-  for (const auto& piece : pieces_of(mesh)) {
-    parts.push_back(convex_piece(mesh, piece, name));
-    hulls += mass_mesh(triangles_of(parts.back())).volume;
-  }
-  require_disjoint(parts, name);
   const MassProperties mass = mass_mesh(mesh);
-  const double volume = mass.volume;
-  if (std::abs(hulls - volume) > 1e-4 * volume)
-    throw InputError(fmt::format(
-        "{}: the solid is not convex: its volume is {:.6g} m3, that of the hulls of its {} pieces "
-        "{:.6g} m3; divide it into closed convex pieces that do not overlap",
-        name, volume, parts.size(), hulls));
+  std::vector<Polytope> parts = hulls_of(mesh, pieces_of(mesh));
+  // A hole through a piece leaves all of its corners on the hull: its volume tells.
+  if (!parts.empty() && volume_of(parts) <= (1 + kRound) * mass.volume) {
+    require_disjoint(parts, name);
+  } else {
+    require_not_crossing(mesh, name);
+    parts = convex_parts(mesh, fit_error, name);
+    if (volume_of(parts) < (1 - kRound) * mass.volume)
+      throw InputError(fmt::format("{}: some of its pieces share space, which would be counted twice", name));
+  }
   return make_polytope_shape(std::move(parts), mesh, mass);
 }
 

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "shape/mass_properties.hpp"
+
 namespace ejecta {
 namespace {
 
@@ -94,6 +96,8 @@ Vec3 support_polytope(const Polytope& p, const Vec3& direction) {
   return *std::max_element(p.vertices.begin(), p.vertices.end(),
                            [&](const Vec3& a, const Vec3& b) { return direction.dot(a) < direction.dot(b); });
 }
+
+double volume_polytope(const Polytope& p) { return mass_mesh(triangles_of(p)).volume; }
 
 double width_polytope(const Polytope& p) {
   double width = std::numeric_limits<double>::infinity();

@@ -44,6 +44,7 @@ struct NearestPoint {
 /// Exact signed distance of a point and its gradient.
 NearestPoint nearest_on_polytope(const Polytope& p, const Vec3& point);
 Vec3 support_polytope(const Polytope& p, const Vec3& direction);
+double volume_polytope(const Polytope& p);  ///< m3
 /// Smallest distance between two parallel planes that hold the polytope, one of them on a face.
 double width_polytope(const Polytope& p);
 

@@ -123,6 +123,12 @@ std::span<const Polytope> Shape::polytopes() const {
                     data_->geometry);
 }
 
+double Shape::parts_volume() const {
+  double sum = 0.0;
+  for (const Polytope& p : polytopes()) sum += volume_polytope(p);
+  return sum;
+}
+
 double Shape::bounding_radius() const { return data_->bounding_radius; }
 double Shape::smallest_feature() const { return data_->smallest_feature; }
 const MassProperties& Shape::mass_properties() const { return data_->mass; }

@@ -49,6 +49,8 @@ class Shape {
   /// The parts contact detection works on, body axes: a shape is a union of balls or of convex polytopes.
   std::span<const Ball> balls() const;
   std::span<const Polytope> polytopes() const;
+  /// m3, of all polytopes: more than the solid's where they cover hollows.
+  double parts_volume() const;
 
   explicit Shape(std::shared_ptr<const ShapeData> data) : data_(std::move(data)) {}
 
@@ -69,9 +71,11 @@ Shape make_multisphere(const std::vector<Ball>& balls, const MassProperties& mas
 Shape make_cluster(const Vec3& size, const std::array<int, 3>& count, double sphere_diameter);
 /// Convex hull of the points.
 Shape make_polyhedron(const std::vector<Vec3>& points);
-/// A closed mesh, outward normals, of one or more separate convex pieces. `name` appears in errors, which
-/// name the open edge, the inverted or degenerate triangle, or the vertex that makes a piece concave.
-Shape make_mesh(const TriangleMesh& mesh, const std::string& name);
+/// A closed mesh, outward normals, of one or more separate pieces. Mass properties are those of the mesh.
+/// What is not convex is divided into convex parts, below whose surface that of the mesh lies nowhere deeper
+/// than `fit_error` (m; 0: exactly). `name` appears in errors, which name the open edge, the inverted or
+/// degenerate triangle, triangles that cross, or the fit_error it takes.
+Shape make_mesh(const TriangleMesh& mesh, const std::string& name, double fit_error = 0.0);
 
 /// ((|x|/a)^across + (|y|/b)^across)^(along/across) + (|z|/c)^along <= 1, `size` = (2a, 2b, 2c); 2, 2 is an
 /// ellipsoid. Mass properties are exact; its surface, and so contacts, are those of an inscribed polyhedron.

@@ -18,6 +18,9 @@ struct TriangleMesh {
 /// outward normals (positive volume).
 void require_closed(const TriangleMesh& mesh, const std::string& name);
 
+/// Throws InputError naming two triangles that go through each other.
+void require_not_crossing(const TriangleMesh& mesh, const std::string& name);
+
 /// Unit sphere: an icosahedron divided `levels` times, 20 * 4^levels triangles.
 TriangleMesh icosphere(int levels);
 
