@@ -61,7 +61,8 @@ export interface SliceFrame {
 
 export interface Frame {
   time: number;
-  poses: Pose[];
+  /** By body; undefined before it has come and after it has gone. */
+  poses: (Pose | undefined)[];
   /** By raster; missing where no air is computed. */
   slices: Map<number, SliceFrame>;
 }
@@ -126,7 +127,7 @@ interface RawHeader extends Omit<Replay, "bodies" | "valveOpen" | "frames"> {
 
 interface RawFrame {
   time: number;
-  bodies: number[][];
+  bodies: (number[] | null)[];
   slices: { raster: number; full_scale: number; data: string }[];
 }
 
@@ -141,10 +142,9 @@ async function readFrame(line: RawFrame): Promise<Frame> {
   const slices = new Map<number, SliceFrame>();
   for (const s of line.slices)
     slices.set(s.raster, { fullScale: s.full_scale, pixels: await inflate(bytesOf(s.data)) });
-  const poses = line.bodies.map((b): Pose => ({
-    position: b.slice(0, 3) as Vec3,
-    orientation: b.slice(3, 7) as Quat,
-  }));
+  const poses = line.bodies.map((b): Pose | undefined => b
+    ? { position: b.slice(0, 3) as Vec3, orientation: b.slice(3, 7) as Quat }
+    : undefined);
   return { time: line.time, poses, slices };
 }
 

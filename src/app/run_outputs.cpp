@@ -197,7 +197,9 @@ void RunOutputs::write_fields(double time) {
 void RunOutputs::write_replay(double time) {
   output::ReplayFrame frame;
   frame.time = time;
-  for (const Body& b : model_.particles().bodies()) frame.bodies.push_back({b.position, b.orientation});
+  for (const Body& b : model_.particles().bodies())
+    frame.bodies.push_back(
+        {b.position, b.orientation, model_.particles().presence(int(frame.bodies.size())) == Presence::here});
   if (model_.air())
     for (std::size_t r = 0; r < samplers_.size(); ++r) {
       output::SliceFrame slice;

@@ -88,12 +88,16 @@ void ReplayFile::add(const ReplayFrame& frame) {
   const auto out = std::back_inserter(line_);
   fmt::format_to(out, "{{\"time\":{},\"bodies\":[", frame.time);
   for (std::size_t n = 0; n < frame.bodies.size(); ++n) {
+    line_ += n ? "," : "";
+    if (!frame.bodies[n].there) {
+      line_ += "null";
+      continue;
+    }
     const Vec3& p = frame.bodies[n].position;
     const Quat& q = frame.bodies[n].orientation;
     if (!p.allFinite() || !q.coeffs().allFinite())
       throw DivergedError(fmt::format("body {} has no finite position at t = {} s", n, frame.time));
-    fmt::format_to(out, "{}[{},{},{},{},{},{},{}]", n ? "," : "", p.x(), p.y(), p.z(), q.w(), q.x(), q.y(),
-                   q.z());
+    fmt::format_to(out, "[{},{},{},{},{},{},{}]", p.x(), p.y(), p.z(), q.w(), q.x(), q.y(), q.z());
   }
   line_ += "],\"slices\":[";
   for (std::size_t n = 0; n < frame.slices.size(); ++n) {

@@ -43,7 +43,7 @@ struct BodySurface {
 struct BodyPose {
   Vec3 position{0, 0, 0};        ///< m, centre of mass
   Quat orientation{1, 0, 0, 0};  ///< body axes -> world
-  bool there = true;             ///< a body that has not come yet or has gone is drawn as a point
+  bool there = true;             ///< not drawn before it has come and after it has gone
 };
 
 /// A flat obstacle drawn in the views: its edge line in side view and a slab in 3D.

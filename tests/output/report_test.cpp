@@ -66,12 +66,16 @@ TEST(Replay, ResumedFileEqualsTheUninterruptedOne) {
 
 TEST(Replay, LinesAreJson) {
   const ScratchDirectory dir;
-  { ReplayFile(dir / "r", header()).add(frame_at(0.25)); }
+  ReplayFrame moment = frame_at(0.25);
+  moment.bodies.push_back({});
+  moment.bodies.back().there = false;
+  { ReplayFile(dir / "r", header()).add(moment); }
   const auto lines = read_replay_lines(dir / "r");
   ASSERT_EQ(lines.size(), 2u);
   EXPECT_EQ(ordered_json::parse(lines[0])["rasters"][0]["pixels"][1], 2);
   const auto frame = ordered_json::parse(lines[1]);
   EXPECT_EQ(frame["bodies"][0], ordered_json({0.25, 0, 0.5, 1, 0, 0, 0}));
+  EXPECT_TRUE(frame["bodies"][1].is_null());
   EXPECT_EQ(frame["slices"][0]["full_scale"], 12.5);
 }
 
