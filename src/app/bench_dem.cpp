@@ -122,7 +122,7 @@ void bench_dem(bool only_settled) {
   if (only_settled) return;
   measure("10,000 spheres settling", spheres(10000, 2.1), 0, 4000);
   measure("2,000 polyhedra on a belt", belt(2000), 800, 400);
-  for (const int count : {1000, 10000, 100000})
+  for (const int count : {1000, 10000, 30000, 100000, 300000})
     measure(fmt::format("{} spheres in contact", count).c_str(), spheres(count, 2.0), 200, 200);
   fmt::print(
       "M p-s/s/c: million particle-steps a second and core; steps/l.: steps between lists of neighbours\n");

@@ -98,9 +98,9 @@ std::vector<Key> keys(BodySpec& s) {
        .unset = "none",
        .example = R"(["head.stl", "tail.stl"])"},
       {"fit_error", &s.fit_error, length, not_negative,
-       "No point of the surface in `file` lies farther below that of the spheres fitted into it "
-       "(multisphere) or of "
-       "the convex parts it is divided into (mesh)",
+       "Largest distance between the surface in `file` and that of the spheres fitted into it (multisphere) "
+       "or "
+       "of the convex parts it is divided into (mesh)",
        "", "exactly divided (mesh); needed to fit spheres", false, "\"0.5 mm\""},
       {"scale", &s.scale, none, positive, "Mesh: factor from the units of the file to metres (0.001 for mm)",
        ""},
