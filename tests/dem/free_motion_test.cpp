@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "dem/particles.hpp"
+#include "dem/rotation.hpp"
 
 namespace ejecta {
 namespace {
@@ -49,6 +50,20 @@ TEST(FreeMotion, CuboidFlipsHundredTimes) {
   EXPECT_LT(energy_error, 1e-6);
   EXPECT_LT(momentum_error, 1e-6);
   RecordProperty("energy_error", std::to_string(energy_error));
+}
+
+/// Through most of a flip, against a step eight times finer; steps short enough not to be divided further.
+TEST(FreeMotion, RotationIsOfFourthOrder) {
+  const Vec3 inertia(2.19375e-7, 3.375e-7, 4.21875e-7), momentum = inertia.cwiseProduct(Vec3(0.1, 100, 0.1));
+  const auto at_end = [&](int steps) {
+    Quat q = Quat::Identity();
+    for (int n = 0; n < steps; ++n) rotate_free(q, momentum, inertia, 0.32 / steps);
+    return q;
+  };
+  const Quat exact = at_end(12800);
+  const double coarse = exact.angularDistance(at_end(800)), fine = exact.angularDistance(at_end(1600));
+  EXPECT_NEAR(std::log2(coarse / fine), 4.0, 0.1);
+  EXPECT_LT(fine, 1e-6);
 }
 
 TEST(FreeMotion, ParabolaIsExactAndReleaseIsKept) {
