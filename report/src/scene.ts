@@ -133,7 +133,7 @@ export class SceneView {
   /** The box of the air with its edges, or that around all bodies; its size. */
   private addBox(replay: Replay): Vector3 {
     if (hasBox(replay)) this.domain.set(vector(replay.domain[0]), vector(replay.domain[1]));
-    else for (const frame of replay.frames) for (const pose of frame.poses) this.domain.expandByPoint(vector(pose.position));
+    else for (const frame of replay.frames) for (const pose of frame.poses) if (pose) this.domain.expandByPoint(vector(pose.position));
     this.flight.copy(this.domain);
     const size = this.domain.getSize(new Vector3());
     if (hasBox(replay)) {
