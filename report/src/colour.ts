@@ -13,15 +13,17 @@ export function viridis(fraction: number): [number, number, number] {
   }) as [number, number, number];
 }
 
-/** Air at rest fades into the background: RGBA of 256 speeds. */
-export const AIR_COLOURS: Uint8ClampedArray = (() => {
+/** RGBA of 256 speeds; `fade`: entries over which rest fades into the background. */
+function speedColours(fade: number): Uint8ClampedArray {
   const table = new Uint8ClampedArray(256 * 4);
   for (let n = 0; n < 256; ++n) {
     table.set(viridis(n / 255), 4 * n);
-    table[4 * n + 3] = Math.round(255 * Math.min(1, n / 48));
+    table[4 * n + 3] = n < fade ? Math.round((255 * n) / fade) : 255;
   }
   return table;
-})();
+}
+export const AIR_COLOURS = speedColours(48);
+export const BODY_COLOURS = speedColours(0);
 
 /** Paints a slice into RGBA pixels, top row first (`flip`) or bottom row first. */
 export function paintAir(

@@ -30,6 +30,25 @@ export function poseAt(replay: Replay, b: number, time: number): Pose | undefine
   };
 }
 
+/** Speed of body `b` between the frames around `time`, m/s; undefined where it is not there. */
+export function speedAt(replay: Replay, b: number, time: number): number | undefined {
+  const n = Math.min(frameIndex(replay.frames, time), replay.frames.length - 2);
+  const from = replay.frames[n];
+  const to = replay.frames[n + 1];
+  const p = from?.poses[b];
+  const q = to?.poses[b];
+  if (!from || !to || !p || !q) return undefined;
+  return Math.hypot(...p.position.map((v, d) => q.position[d]! - v)) / (to.time - from.time);
+}
+
+/** Highest speed of any body between two frames, m/s. */
+export function fastestBody(replay: Replay): number {
+  let fastest = 0;
+  for (const { time } of replay.frames)
+    for (let b = 0; b < replay.bodies.length; ++b) fastest = Math.max(fastest, speedAt(replay, b, time) ?? 0);
+  return fastest;
+}
+
 /** Rotation matrix, row by row. */
 export function matrixOf([w, x, y, z]: Quat): number[] {
   return [

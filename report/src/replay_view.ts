@@ -2,7 +2,7 @@ import type { Run } from "./data";
 import { h } from "./dom";
 import { fixed } from "./format";
 import { Player } from "./player";
-import { SceneView, hasWebGl, type View } from "./scene";
+import { SceneView, hasWebGl, type Paint, type View } from "./scene";
 import { SliceView } from "./slice";
 
 const STEP = 1 / 400; // of the whole time, for a press of an arrow key
@@ -92,6 +92,11 @@ export function replayView(runs: Run[], player: Player): HTMLElement | null {
         views.append(tab);
       }
       head.append(views);
+      if (replay.bodies.length > 0) {
+        const paint: Paint = air ? "body" : "speed";  // where there is no air, the bodies are the subject
+        scene.colourBy(paint);
+        head.append(select("Colour", [["body", "by body"], ["speed", "by speed"]], paint, (p) => scene!.colourBy(p as Paint)), scene.legend);
+      }
       panel.append(scene.canvas);
     } else {
       panel.append(h("p", { class: "missing" }, "The view in space needs WebGL, which this browser does not offer."));

@@ -5,17 +5,19 @@ import {
   SRGBColorSpace, Vector3, WebGLRenderer,
 } from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
-import { bodyColour } from "./colour";
+import { BODY_COLOURS, bodyColour, viridis } from "./colour";
 import { CROWD, columnOf, hasBox, type Plate, type Raster, type Replay, type Run, type Vec3 } from "./data";
 import { h } from "./dom";
-import { poseAt } from "./motion";
+import { fastestBody, poseAt, radius, speedAt } from "./motion";
 import type { Player } from "./player";
-import { AirImage, fastestAir } from "./slice";
+import { AirImage, fastestAir, speedBar } from "./slice";
 
 export function hasWebGl(): boolean {
   return document.createElement("canvas").getContext("webgl2") !== null;
 }
 
+/** What the colour of a body says. */
+export type Paint = "body" | "speed";
 export type View = "jet" | "flight" | "side" | "above" | "follow";
 
 const vector = (v: Vec3): Vector3 => new Vector3(...v);
@@ -64,11 +66,14 @@ function pathLine(points: Vector3[], colour: string, dashed: boolean): Line {
 /** The replay in space: bodies as their true triangles, the air as coloured planes, the plate, the paths. */
 export class SceneView {
   readonly canvas = h("canvas", { class: "stage", role: "img" });
+  readonly legend = h("div", { class: "legend" });
+  private paint: Paint = "body";
+  private readonly fastest: number;
   private readonly scene = new Scene();
   private readonly camera = new PerspectiveCamera(32, 1, 0.001, 20);
   private readonly renderer: WebGLRenderer;
   private readonly controls: OrbitControls;
-  private readonly bodies: { run: Run; body: number; mesh: Mesh }[] = [];
+  private readonly bodies: { run: Run; body: number; mesh: Mesh; look: MeshStandardMaterial; own: Color }[] = [];
   private air: { image: AirImage; texture: CanvasTexture; mesh: Mesh }[] = [];
   private readonly flight = new Box3();
   private readonly domain = new Box3();
@@ -91,6 +96,7 @@ export class SceneView {
     fill.position.set(0.6, 0.5, -0.3);
     this.scene.add(fill);
     runs.forEach((run, r) => this.addRun(run, r > 0));
+    this.fastest = Math.max(1e-9, ...runs.map((run) => (run.replay ? fastestBody(run.replay) : 0)));
     this.controls = new OrbitControls(this.camera, this.canvas);
     this.controls.addEventListener("change", () => this.request());
     player.onChange(() => this.request());
@@ -116,12 +122,11 @@ export class SceneView {
       const flat = geometry.toNonIndexed();
       flat.computeVertexNormals();
       flat.computeBoundingSphere();
-      const mesh = new Mesh(flat, new MeshStandardMaterial({
-        color: new Color(0xb8b2a7).lerp(new Color(colour), 0.25), roughness: 0.85,
-        transparent: ghost, opacity: ghost ? 0.45 : 1,
-      }));
+      const own = new Color(0xb8b2a7).lerp(new Color(colour), 0.25);
+      const look = new MeshStandardMaterial({ color: own, roughness: 0.85, transparent: ghost, opacity: ghost ? 0.45 : 1 });
+      const mesh = new Mesh(flat, look);
       this.scene.add(mesh);
-      this.bodies.push({ run, body, mesh });
+      this.bodies.push({ run, body, mesh, look, own });
       if (replay.bodies.length > CROWD) return;
       const points = this.pathOf(run, body);
       if (points.length > 1) this.scene.add(pathLine(points, colour, false));
@@ -133,7 +138,10 @@ export class SceneView {
   /** The box of the air with its edges, or that around all bodies; its size. */
   private addBox(replay: Replay): Vector3 {
     if (hasBox(replay)) this.domain.set(vector(replay.domain[0]), vector(replay.domain[1]));
-    else for (const frame of replay.frames) for (const pose of frame.poses) if (pose) this.domain.expandByPoint(vector(pose.position));
+    else {
+      for (const frame of replay.frames) for (const pose of frame.poses) if (pose) this.domain.expandByPoint(vector(pose.position));
+      this.domain.expandByScalar(Math.max(0, ...replay.bodies.map(radius)));
+    }
     this.flight.copy(this.domain);
     const size = this.domain.getSize(new Vector3());
     if (hasBox(replay)) {
@@ -174,6 +182,12 @@ export class SceneView {
     this.request();
   }
 
+  colourBy(paint: Paint): void {
+    this.paint = paint;
+    this.legend.replaceChildren(...(paint === "speed" ? speedBar("Speed of bodies", BODY_COLOURS, this.fastest) : []));
+    this.request();
+  }
+
   look(view: View): void {
     this.followed = view === "follow" ? this.bodies[0]?.mesh : undefined;
     if (this.followed) {
@@ -203,13 +217,19 @@ export class SceneView {
   }
 
   private moveBodies(): void {
-    for (const { run, body, mesh } of this.bodies) {
+    for (const { run, body, mesh, look, own } of this.bodies) {
       const pose = poseAt(run.replay!, body, this.player.time);
       mesh.visible = pose !== undefined;
       if (!pose) continue;
       const [w, x, y, z] = pose.orientation;
       mesh.position.set(...pose.position);
       mesh.quaternion.set(x, y, z, w);
+      const speed = this.paint === "speed" ? speedAt(run.replay!, body, this.player.time) : undefined;
+      if (speed === undefined) look.color.copy(own);
+      else {
+        const [red, green, blue] = viridis(speed / this.fastest);
+        look.color.setRGB(red / 255, green / 255, blue / 255, SRGBColorSpace);
+      }
     }
   }
 

@@ -1,7 +1,7 @@
 import { AIR_COLOURS, bodyColour, paintAir } from "./colour";
 import type { Raster, Run, SliceFrame } from "./data";
 import { h } from "./dom";
-import { fixed, ticks } from "./format";
+import { fixed, short, ticks } from "./format";
 import { frameIndex, placed, poseAt } from "./motion";
 import type { Player } from "./player";
 
@@ -10,6 +10,13 @@ const AXES = ["x", "y", "z"];
 /** Fastest air in any frame of any slice, m/s: the top of the colour scale. */
 export function fastestAir(run: Run): number {
   return Math.max(1e-9, ...run.replay!.frames.flatMap((f) => [...f.slices.values()].map((s) => s.fullScale)));
+}
+
+/** A colour scale from rest to `top` m/s. */
+export function speedBar(title: string, colours: Uint8ClampedArray, top: number): HTMLElement[] {
+  const bar = h("canvas", { width: 256, height: 1, "aria-hidden": "true" });
+  bar.getContext("2d")!.putImageData(new ImageData(new Uint8ClampedArray(colours), 256, 1), 0, 0);
+  return [h("span", {}, `${title} 0`), bar, h("span", {}, `${top < 10 ? short(top, 2) : fixed(top, 0)} m/s`)];
 }
 
 /** A painted slice, ready to be drawn or used as a texture. */
@@ -143,11 +150,7 @@ export class SliceView {
     this.image = new AirImage(run, raster, fastestAir(run));
     this.plane = planeOf(run.replay!.rasters[raster]!);
     this.canvas.style.aspectRatio = String(this.aspect());
-    const bar = h("canvas", { width: 256, height: 1, "aria-hidden": "true" });
-    const pixels = new ImageData(new Uint8ClampedArray(AIR_COLOURS), 256, 1);
-    bar.getContext("2d")!.putImageData(pixels, 0, 0);
-    this.legend.replaceChildren(
-      h("span", {}, "Air speed 0"), bar, h("span", {}, `${fixed(this.image.top, 0)} m/s`));
+    this.legend.replaceChildren(...speedBar("Air speed", AIR_COLOURS, this.image.top));
     this.draw();
   }
 

@@ -105,6 +105,16 @@ try {
         range.value = "0";
         range.dispatchEvent(new Event("input"));
       });
+      const colour = page.locator("label.field:has-text('Colour') select");
+      if ((await colour.count()) > 0) {
+        const inSpace = page.locator("canvas.stage").last();
+        const drawn = () => inSpace.evaluate((c) => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(() => done(c.toDataURL())))));
+        await colour.selectOption("body");
+        const byBody = await drawn();
+        await colour.selectOption("speed");
+        assert.ok((await drawn()) !== byBody, "the colour of the bodies did not change");
+        assert.match(await page.locator(".panel").last().locator(".legend").textContent(), /Speed of bodies 0.* m\/s/);
+      }
       const start = await clock();
       assert.ok(start <= time0, "it did not go back to the start");
       await page.reload();
