@@ -13,6 +13,7 @@
 #include "case/load.hpp"
 #include "case/words.hpp"
 #include "output/build_info.hpp"
+#include "scratch_directory.hpp"
 
 using namespace ejecta;
 using testing::HasSubstr;
@@ -70,21 +71,14 @@ Case small_case(const std::string& more = "") { return parse_case(small_jet(more
 
 class Folder : public testing::Test {
  protected:
-  void SetUp() override {
-    folder = fs::temp_directory_path() / "ejecta-jet-test";
-    fs::remove_all(folder);
-    fs::create_directories(folder);
-    setenv("EJECTA_CACHE", folder.c_str(), 1);
-  }
-  void TearDown() override {
-    unsetenv("EJECTA_CACHE");
-    fs::remove_all(folder);
-  }
+  void SetUp() override { setenv("EJECTA_CACHE", folder.c_str(), 1); }
+  void TearDown() override { unsetenv("EJECTA_CACHE"); }
   fs::path file(const std::string& text) {
     std::ofstream(folder / "measured.csv") << text;
     return folder / "measured.csv";
   }
-  fs::path folder;
+  ScratchDirectory scratch;
+  fs::path folder = scratch.path();
 };
 
 using JetStore = Folder;

@@ -8,6 +8,7 @@
 
 #include "base/error.hpp"
 #include "case/load.hpp"
+#include "scratch_directory.hpp"
 
 using namespace ejecta;
 using testing::HasSubstr;
@@ -107,15 +108,14 @@ TEST(Orders, FromTheErrorsOfSuccessiveGrids) {
 
 class ValidateCase : public testing::Test {
  protected:
-  fs::path folder = fs::path(testing::TempDir()) / "ejecta-validate";
+  ScratchDirectory scratch;
+  fs::path folder = scratch.path();
   fs::path file = folder / "bounce.toml";
   void SetUp() override {
-    fs::create_directories(folder);
     std::ofstream(file)
         << "[run]\nend_time = \"1 s\"\n[flow]\nsolver = \"none\"\n[[body]]\ndiameter = \"1 mm\"\n"
            "[[expect]]\nquantity = \"/height\"\nreference = 2\ntolerance = 0.5\nsource = \"by hand\"\n";
   }
-  void TearDown() override { fs::remove_all(folder); }
 
   static int write_height(const RunOptions& o, double height) {
     fs::create_directories(o.out);
