@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 
 #include "app/forecast.hpp"
 #include "base/units.hpp"
 #include "case/extent.hpp"
+#include "case/load.hpp"
 #include "case/words.hpp"
 #include "dem/body.hpp"
 
@@ -62,7 +62,7 @@ std::string flow_part(const Case& c, double bandwidth) {
 
 /// What a surface from a file touches as.
 std::string parts_words(const Case& c, const BodySpec& b) {
-  const Shape shape = make_shape(b, std::filesystem::path(c.path).parent_path());
+  const Shape shape = make_shape(b, folder_of(c));
   if (!shape.balls().empty()) return fmt::format(", as {} spheres", shape.balls().size());
   return fmt::format(", as {} convex parts, volume {:+.3f} %", shape.polytopes().size(),
                      100 * (shape.parts_volume() / shape.mass_properties().volume - 1));

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <iostream>
 
 #include "app/jet_store.hpp"
@@ -19,8 +18,6 @@ namespace {
 /// How long the air of a shut valve is followed, s: it crosses 40 mm in well under one.
 constexpr double kAfterClosing = 2e-3;
 
-std::string folder(const Case& c) { return std::filesystem::path(c.path).parent_path().string(); }
-
 /// The valve's pulse as the jet's case computes it: commanded at time zero.
 ValveSpec from_zero(ValveSpec v) {
   for (double& t : v.more_pulses) t -= v.opens_at;
@@ -34,7 +31,7 @@ class ComputedJet : public JetSource {
       : nozzle_(box.jet.nozzle),
         starts_(box.valve.opens_at),
         source_(std::move(source)),
-        valve_(source_.valve, folder(source_)),
+        valve_(source_.valve, folder_of(source_)),
         profile_(stored_or_computed_jet(source_, computed_jet_height(box),
                                         [](const std::string& line) { std::cerr << line << '\n'; })) {}
 
@@ -68,7 +65,7 @@ class ComputedJet : public JetSource {
 }  // namespace
 
 Case computed_jet_case(const Case& box) {
-  Case c = load_case((std::filesystem::path(folder(box)) / box.jet.source_case).string());
+  Case c = load_case(beside_case(box, box.jet.source_case));
   if (!box.valve.trace.empty())
     throw InputError("jet.kind = \"computed\": give a valve.trace in the jet's case, not in the box");
   const ValveSpec own = c.valve;
@@ -77,7 +74,7 @@ Case computed_jet_case(const Case& box) {
     c.valve.shape = own.shape;
     c.valve.trace = own.trace;
   }
-  c.run.end_time = Valve(c.valve, folder(c)).closed_from() + kAfterClosing;
+  c.run.end_time = Valve(c.valve, folder_of(c)).closed_from() + kAfterClosing;
   return c;
 }
 

@@ -1,7 +1,8 @@
 #include "app/jet_drive.hpp"
 
 #include <cmath>
-#include <filesystem>
+
+#include "case/load.hpp"
 
 namespace ejecta {
 namespace {
@@ -15,7 +16,7 @@ double inlet_epsilon(double k, double diameter) {
 }  // namespace
 
 JetDrive::JetDrive(const Case& c)
-    : valve_(c.valve, std::filesystem::path(c.path).parent_path().string()),
+    : valve_(c.valve, folder_of(c)),
       gas_{c.fluid.gamma, c.fluid.gas_constant},
       ambient_(c.environment.pressure),
       temperature_(c.valve.supply_temperature > 0.0 ? c.valve.supply_temperature : c.environment.temperature),

@@ -7,6 +7,7 @@
 
 #include "base/parallel.hpp"
 #include "base/stopwatch.hpp"
+#include "case/load.hpp"
 #include "case/write.hpp"
 #include "output/report.hpp"
 
@@ -52,8 +53,7 @@ std::vector<MeasuredCurve> read_measurements(const Case& c) {
   for (const MeasuredSpec& m : c.measured) {
     const bool over_time =
         std::any_of(c.probes.begin(), c.probes.end(), [&](const ProbeSpec& p) { return p.name == m.of; });
-    curves.push_back(read_measured(std::filesystem::path(c.path).parent_path() / m.file,
-                                   over_time ? Dimension::time : Dimension::length));
+    curves.push_back(read_measured(beside_case(c, m.file), over_time ? Dimension::time : Dimension::length));
   }
   return curves;
 }

@@ -1,9 +1,9 @@
 #include "app/jet_source.hpp"
 
 #include <algorithm>
-#include <filesystem>
 
 #include "app/computed_jet.hpp"
+#include "case/load.hpp"
 #include "flow/gas.hpp"
 #include "sorter/nozzle.hpp"
 
@@ -21,7 +21,7 @@ class ValveJet : public JetSource {
         ambient_(c.environment.pressure),
         temperature_(c.valve.supply_temperature > 0.0 ? c.valve.supply_temperature
                                                       : c.environment.temperature),
-        valve_(c.valve, std::filesystem::path(c.path).parent_path().string()),
+        valve_(c.valve, folder_of(c)),
         far_(c.jet, c.valve, 1.0),
         near_(c.jet, c.valve) {
     valve_.require_jet(ambient_);

@@ -9,6 +9,7 @@
 #include "app/jet_model.hpp"
 #include "app/jet_records.hpp"
 #include "base/error.hpp"
+#include "case/load.hpp"
 #include "case/write.hpp"
 #include "output/build_info.hpp"
 #include "output/sha256.hpp"
@@ -41,7 +42,7 @@ Case without_outputs(Case c) {
 std::string trace_of(const Case& c) {
   if (c.valve.trace.empty()) return "";
   std::ostringstream text;
-  text << std::ifstream(std::filesystem::path(c.path).parent_path() / c.valve.trace).rdbuf();
+  text << std::ifstream(beside_case(c, c.valve.trace)).rdbuf();
   return text.str();
 }
 
@@ -65,7 +66,7 @@ std::filesystem::path jet_file(const Case& jet, double height) {
 }
 
 std::filesystem::path shipped_jet_file(const Case& jet, double height) {
-  return std::filesystem::path(jet.path).parent_path() / "jets" / jet_file_name(jet, height);
+  return beside_case(jet, "jets/" + jet_file_name(jet, height));
 }
 
 ProfileRecorder::ProfileRecorder(const JetModel& jet, double height) : profile_(height, radii_of(jet)) {

@@ -36,7 +36,4 @@ void sense_sorter(const Case&, Findings&);
 void sense_records(const Case&, Findings&);
 void sense_expectations(const Case&, Findings&);
 
-/// A name relative to the case file's folder, unless absolute.
-std::string beside_case(const Case&, const std::string& file);
-
 }  // namespace ejecta

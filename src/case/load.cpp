@@ -115,14 +115,24 @@ Case parse_case(const std::string& text, const std::string& name, const std::vec
   return c;
 }
 
+std::string folder_of(const Case& c) { return std::filesystem::path(c.path).parent_path().string(); }
+
+std::string beside_case(const Case& c, const std::string& file) {
+  return (std::filesystem::path(c.path).parent_path() / file).string();
+}
+
 Case with_absolute_files(Case c) {
   const auto resolve = [&](std::string& file) {
     if (!file.empty()) file = std::filesystem::absolute(beside_case(c, file)).lexically_normal().string();
   };
   resolve(c.valve.trace);
   resolve(c.jet.source_case);
-  for (BodySpec& b : c.bodies) resolve(b.file);
+  for (BodySpec& b : c.bodies) {
+    resolve(b.file);
+    for (std::string& file : b.files) resolve(file);
+  }
   for (WallSpec& w : c.walls) resolve(w.file);
+  for (MeasuredSpec& m : c.measured) resolve(m.file);
   return c;
 }
 

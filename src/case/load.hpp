@@ -17,6 +17,12 @@ Case load_case(const std::string& path, const std::vector<std::string>& override
 Case parse_case(const std::string& text, const std::string& name,
                 const std::vector<std::string>& overrides = {}, std::vector<Problem>* warnings = nullptr);
 
+/// The folder of the case file, to which the names of files in it are relative.
+std::string folder_of(const Case& c);
+
+/// The path of a file named in the case.
+std::string beside_case(const Case& c, const std::string& file);
+
 /// The same case with the names of its files made absolute, so that it can be read from another folder.
 Case with_absolute_files(Case c);
 

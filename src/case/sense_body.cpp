@@ -8,6 +8,7 @@
 #include "base/units.hpp"
 #include "case/extent.hpp"
 #include "case/findings.hpp"
+#include "case/load.hpp"
 #include "case/names.hpp"
 #include "case/words.hpp"
 
@@ -97,10 +98,6 @@ void check_shape(const Case& c, const BodySpec& b, const std::string& key, Findi
 }
 
 }  // namespace
-
-std::string beside_case(const Case& c, const std::string& file) {
-  return (std::filesystem::path(c.path).parent_path() / file).string();
-}
 
 void sense_materials(const Case& c, Findings& found) {
   check_names(c.materials, "material", found);

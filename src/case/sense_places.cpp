@@ -7,6 +7,7 @@
 #include "base/units.hpp"
 #include "case/extent.hpp"
 #include "case/findings.hpp"
+#include "case/load.hpp"
 #include "case/names.hpp"
 #include "case/schema.hpp"
 

@@ -6,6 +6,7 @@
 #include "base/units.hpp"
 #include "case/extent.hpp"
 #include "case/findings.hpp"
+#include "case/load.hpp"
 
 /// Valve, jet, launch, splitter.
 namespace ejecta {

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <limits>
 
 #include "base/error.hpp"
 #include "base/state_reader.hpp"
+#include "case/load.hpp"
 #include "dem/particles.hpp"
 #include "dem/rotation.hpp"
 #include "dem/time_step.hpp"
@@ -225,7 +225,7 @@ void Particles::restore(std::span<const double> s) {
 }
 
 Particles make_particles(const Case& config) {
-  const std::string directory = std::filesystem::path(config.path).parent_path();
+  const std::string directory = folder_of(config);
   const ContactSpec& contact = config.contact;
   if (!(contact.time_step_fraction > 0 && contact.time_step_fraction <= 0.5))
     throw InputError(

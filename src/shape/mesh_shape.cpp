@@ -55,11 +55,6 @@ std::vector<Polytope> hulls_of(const TriangleMesh& mesh, const std::vector<std::
   return hulls;
 }
 
-double volume_of(const std::vector<Polytope>& parts) {
-  return std::accumulate(parts.begin(), parts.end(), 0.0,
-                         [](double sum, const Polytope& p) { return sum + volume_polytope(p); });
-}
-
 /// Parts that share space would be counted twice. (That no corner of one lies inside another is not all that
 /// could be asked, but what happens.)
 void require_disjoint(const std::vector<Polytope>& parts, const std::string& name) {
@@ -110,12 +105,12 @@ Shape make_mesh(const TriangleMesh& mesh, const std::string& name, double fit_er
   const MassProperties mass = mass_mesh(mesh);
   std::vector<Polytope> parts = hulls_of(mesh, pieces_of(mesh));
   // A hole through a piece leaves all of its corners on the hull: its volume tells.
-  if (!parts.empty() && volume_of(parts) <= (1 + kRound) * mass.volume) {
+  if (!parts.empty() && volume_polytopes(parts) <= (1 + kRound) * mass.volume) {
     require_disjoint(parts, name);
   } else {
     require_not_crossing(mesh, name);
     parts = convex_parts(mesh, fit_error, name);
-    if (volume_of(parts) < (1 - kRound) * mass.volume)
+    if (volume_polytopes(parts) < (1 - kRound) * mass.volume)
       throw InputError(fmt::format("{}: some of its pieces share space, which would be counted twice", name));
   }
   return make_polytope_shape(std::move(parts), mesh, mass);

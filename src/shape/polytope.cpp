@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "shape/mass_properties.hpp"
 
@@ -98,6 +99,11 @@ Vec3 support_polytope(const Polytope& p, const Vec3& direction) {
 }
 
 double volume_polytope(const Polytope& p) { return mass_mesh(triangles_of(p)).volume; }
+
+double volume_polytopes(std::span<const Polytope> parts) {
+  return std::accumulate(parts.begin(), parts.end(), 0.0,
+                         [](double sum, const Polytope& p) { return sum + volume_polytope(p); });
+}
 
 double width_polytope(const Polytope& p) {
   double width = std::numeric_limits<double>::infinity();

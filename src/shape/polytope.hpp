@@ -1,4 +1,5 @@
 #pragma once
+#include <span>
 #include <vector>
 
 #include "base/vec.hpp"
@@ -44,7 +45,8 @@ struct NearestPoint {
 /// Exact signed distance of a point and its gradient.
 NearestPoint nearest_on_polytope(const Polytope& p, const Vec3& point);
 Vec3 support_polytope(const Polytope& p, const Vec3& direction);
-double volume_polytope(const Polytope& p);  ///< m3
+double volume_polytope(const Polytope& p);                 ///< m3
+double volume_polytopes(std::span<const Polytope> parts);  ///< m3; space that two share counts twice
 /// Smallest distance between two parallel planes that hold the polytope, one of them on a face.
 double width_polytope(const Polytope& p);
 

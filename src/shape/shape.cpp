@@ -123,11 +123,7 @@ std::span<const Polytope> Shape::polytopes() const {
                     data_->geometry);
 }
 
-double Shape::parts_volume() const {
-  double sum = 0.0;
-  for (const Polytope& p : polytopes()) sum += volume_polytope(p);
-  return sum;
-}
+double Shape::parts_volume() const { return volume_polytopes(polytopes()); }
 
 double Shape::bounding_radius() const { return data_->bounding_radius; }
 double Shape::smallest_feature() const { return data_->smallest_feature; }

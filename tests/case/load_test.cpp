@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <filesystem>
+
 #include "base/error.hpp"
 #include "case/write.hpp"
 
@@ -119,6 +121,28 @@ TEST(LoadCase, WhatIsWrittenIsReadBackToTheSameText) {
   const std::string once = write_case(parse_case(paper, "paper.toml"));
   const std::string twice = write_case(parse_case(once, "resolved.toml"));
   EXPECT_EQ(once, twice);
+}
+
+TEST(LoadCase, EveryNameOfAFileCanBeMadeAbsolute) {
+  Case c;
+  c.path = "somewhere/case.toml";
+  c.valve.trace = "valve.csv";
+  c.jet.source_case = "../jet.toml";
+  c.bodies.resize(1);
+  c.bodies[0].file = "a.stl";
+  c.bodies[0].files = {"b.stl", "/c.stl"};
+  c.walls.resize(1);
+  c.walls[0].file = "chute.stl";
+  c.measured.resize(1);
+  c.measured[0].file = "pitot.csv";
+  const auto here = std::filesystem::current_path();
+  const Case moved = with_absolute_files(c);
+  EXPECT_EQ(moved.valve.trace, here / "somewhere/valve.csv");
+  EXPECT_EQ(moved.jet.source_case, here / "jet.toml");
+  EXPECT_EQ(moved.bodies[0].file, here / "somewhere/a.stl");
+  EXPECT_EQ(moved.bodies[0].files, (std::vector<std::string>{here / "somewhere/b.stl", "/c.stl"}));
+  EXPECT_EQ(moved.walls[0].file, here / "somewhere/chute.stl");
+  EXPECT_EQ(moved.measured[0].file, here / "somewhere/pitot.csv");
 }
 
 TEST(LoadCase, AllErrorsOfAFileAtOnce) {
