@@ -125,9 +125,9 @@ class IncompressibleModel : public FlowModel {
       if (const auto jet = analyse_round_jet(grid_, flow_->velocity()[2], flow_->pressure_field().view(),
                                              t ? t->eddy_viscosity() : ConstFieldView{}, still_.nu, d, exit,
                                              z0 + 30.0 * d, z0 + 0.8 * (grid_.axis(2).face.back() - z0)))
-        result["round_jet"] = {{"decay", jet->decay},
-                               {"spreading", jet->spreading},
-                               {"decay_times_spreading", jet->decay * jet->spreading},
+        result["round_jet"] = {{"decay", jet->far.decay},
+                               {"spreading", jet->far.spreading},
+                               {"decay_times_spreading", jet->far.decay * jet->far.spreading},
                                {"momentum_variation", jet->momentum_variation}};
     }
   }

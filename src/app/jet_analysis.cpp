@@ -43,20 +43,6 @@ double vertex(const std::vector<double>& x, const std::vector<JetSample>& s, std
   return at_left + left / (left - right) * (at_right - at_left);
 }
 
-/// Slope and intercept of y over x by least squares.
-std::pair<double, double> line_through(const std::vector<double>& x, const std::vector<double>& y) {
-  const double n = double(x.size());
-  double sx = 0, sy = 0, sxx = 0, sxy = 0;
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    sx += x[i];
-    sy += y[i];
-    sxx += x[i] * x[i];
-    sxy += x[i] * y[i];
-  }
-  const double slope = (n * sxy - sx * sy) / (n * sxx - sx * sx);
-  return {slope, (sy - slope * sx) / n};
-}
-
 }  // namespace
 
 Centreline centreline(const JetModel& jet) {
@@ -109,13 +95,7 @@ FarField far_field(const Centreline& line, double equivalent_velocity, double di
     inverse.push_back(equivalent_velocity / w);
     half.push_back(line.half_radius[n]);
   }
-  FarField f;
-  if (z.size() < 3) return f;
-  const auto [slope, intercept] = line_through(z, inverse);
-  f.decay = 1.0 / (slope * diameter);
-  f.virtual_origin = -intercept / slope;
-  f.spreading = line_through(z, half).first;
-  return f;
+  return z.size() < 3 ? FarField{} : fit_far_field(z, inverse, half, diameter);
 }
 
 }  // namespace ejecta

@@ -2,6 +2,7 @@
 #include <vector>
 
 #include "app/jet_model.hpp"
+#include "app/round_jet.hpp"
 
 namespace ejecta {
 
@@ -25,13 +26,8 @@ struct ShockStructure {
 };
 ShockStructure shock_structure(const Centreline& line);
 
-/// Self-similar far field fitted over [from, to] by least squares: U_0/U_c = (z - z0)/(B d) and
-/// r_half = S (z - z1).
-struct FarField {
-  double decay = 0.0;           ///< B, on the momentum-equivalent velocity
-  double spreading = 0.0;       ///< S
-  double virtual_origin = 0.0;  ///< z0, m
-};
+/// Fitted over [from, to], m; U_0 is the momentum-equivalent velocity. Zeros where fewer than three heights
+/// lie in between.
 FarField far_field(const Centreline& line, double equivalent_velocity, double diameter, double from,
                    double to);
 

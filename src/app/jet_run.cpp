@@ -19,7 +19,8 @@ constexpr double kDefaultHistory = 20e-6;  ///< s
 constexpr double kLook = 1e-6;
 constexpr double kShocksEnd = 30e-3;    ///< m: from here on the two jets of Figure 7 are compared
 constexpr double kMomentumLook = 5e-6;  ///< s, between two looks at the momentum
-/// The far field is fitted from this many orifices on, and up to this share of the box.
+/// The far field is fitted from this many orifices on unless the case says otherwise, and up to this share
+/// of the box.
 constexpr double kFarFrom = 25.0, kFarTo = 0.9;
 
 /// Largest deviation of the density from that of the air at rest along a line across the jet, percent.
@@ -146,7 +147,8 @@ void JetRun::show() {
   const ShockStructure shocks = shock_structure(line_);
   const double u = nozzle_equivalent_velocity(jet_.ideal_exit(), c.valve.discharge_coefficient,
                                               gas_density(gas, pa, c.environment.temperature));
-  const FarField far = far_field(line_, u, d, kFarFrom * d, kFarTo * jet_.grid().axis(2).length());
+  const double from = c.jet.far_field_from > 0.0 ? c.jet.far_field_from : kFarFrom * d;
+  const FarField far = far_field(line_, u, d, from, kFarTo * jet_.grid().axis(2).length());
   at_full_["profiles_at_s"] = jet_.time();
   at_full_["equivalent_velocity_m_s"] = u;
   at_full_["shocks"] = {{"mach_disk_m", shocks.mach_disk},

@@ -32,6 +32,7 @@ Case without_outputs(Case c) {
   c.slices.clear();
   c.measured.clear();
   c.jet.compare_incompressible = false;
+  c.jet.far_field_from = 0.0;
   c.jet.sweep_pressures.clear();
   c.jet.sweep_velocities.clear();
   c.expects.clear();

@@ -6,11 +6,12 @@
 namespace ejecta {
 namespace {
 
-double slope(const std::vector<double>& x, const std::vector<double>& y) {
+/// Slope and intercept of y over x by least squares.
+std::pair<double, double> line_through(const std::vector<double>& x, const std::vector<double>& y) {
   double mx = 0, my = 0, xy = 0, xx = 0;
   for (std::size_t n = 0; n < x.size(); ++n) mx += x[n] / double(x.size()), my += y[n] / double(x.size());
   for (std::size_t n = 0; n < x.size(); ++n) xy += (x[n] - mx) * (y[n] - my), xx += (x[n] - mx) * (x[n] - mx);
-  return xy / xx;
+  return {xy / xx, my - xy / xx * mx};
 }
 
 /// On the axis, from the two innermost cells of an even profile.
@@ -20,6 +21,12 @@ double on_axis(const Axis& r, ConstFieldView w, int k) {
 }
 
 }  // namespace
+
+FarField fit_far_field(const std::vector<double>& z, const std::vector<double>& inverse_velocity,
+                       const std::vector<double>& half_radius, double orifice_diameter) {
+  const auto [slope, intercept] = line_through(z, inverse_velocity);
+  return {1.0 / (slope * orifice_diameter), line_through(z, half_radius).first, -intercept / slope};
+}
 
 std::optional<RoundJet> analyse_round_jet(const Grid& grid, ConstFieldView w, ConstFieldView p,
                                           ConstFieldView nut, double viscosity, double diameter,
@@ -51,8 +58,7 @@ std::optional<RoundJet> analyse_round_jet(const Grid& grid, ConstFieldView w, Co
   }
   if (at.size() < 5) return std::nullopt;
   RoundJet jet;
-  jet.decay = 1.0 / (slope(at, inverse) * diameter);
-  jet.spreading = slope(at, half);
+  jet.far = fit_far_field(at, inverse, half, diameter);
   double mean = 0.0;
   for (double f : flux) mean += f / double(flux.size());
   jet.momentum_variation =

@@ -153,6 +153,7 @@ struct JetSpec {
   std::string source_case;  ///< for "computed": the jet case
   /// `ejecta jet` also computes the incompressible jet of the momentum-equivalent velocity (paper, Figure 7)
   bool compare_incompressible = false;
+  double far_field_from = 0.0;           ///< m from the orifice: B and S are fitted beyond; 0: 25 diameters
   std::vector<double> sweep_pressures;   ///< Pa absolute, supplies of `ejecta jet --sweep`, compressible
   std::vector<double> sweep_velocities;  ///< m/s, inlets of `ejecta jet --sweep`, incompressible
 };
