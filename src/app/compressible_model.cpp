@@ -4,6 +4,7 @@
 #include <cmath>
 #include <functional>
 
+#include "app/air_limits.hpp"
 #include "app/grid_sampler.hpp"
 #include "app/jet_drive.hpp"
 #include "app/jet_source.hpp"
@@ -40,7 +41,7 @@ class CompressibleModel : public FlowModel {
     double dt = std::min(solver_->stable_dt(case_.run.courant), case_.run.time_step_max);
     if (!jet_) return dt;
     // A jet that starts must not outrun the step that lets it in, nor open and close unseen within one.
-    dt = std::min(dt, 0.01 * case_.valve.duration);
+    dt = std::min(dt, kStepOfPulse * case_.valve.duration);
     const double h = grid_.axis(2).width.front(), z = grid_.axis(2).face.front();
     return std::min(dt,
                     std::max(0.5 * dt, case_.run.courant * h / std::max(jet_->fastest(time + dt, z), 1e-30)));
@@ -206,7 +207,7 @@ class CompressibleModel : public FlowModel {
     solver_->boundaries().set_states(kJetFace, std::cref(state));  // a reference: nothing is allocated
   }
   double still_epsilon(const GasState& s) const {
-    return case_.flow.turbulence == TurbulenceModel::k_omega_sst ? 0.09 * s.k * s.e : s.e;
+    return case_.flow.turbulence == TurbulenceModel::k_omega_sst ? epsilon_of(s.k, s.e) : s.e;
   }
   double fastest() const {
     const auto u = view(kU), v = view(kV), w = view(kW);

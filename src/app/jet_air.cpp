@@ -35,7 +35,8 @@ class CompressibleAir : public JetAir {
     p.pressure = value(godunov::kP) + solver_->options().reference_pressure;
     p.k = value(godunov::kK);
     p.epsilon = value(godunov::kE);
-    if (case_.flow.turbulence == TurbulenceModel::k_omega_sst) p.epsilon *= 0.09 * p.k;
+    if (case_.flow.turbulence == TurbulenceModel::k_omega_sst)
+      p.epsilon = godunov::epsilon_of(p.k, p.epsilon);
     return p;
   }
   JetFlow flux(int i, int j, int k) const override {

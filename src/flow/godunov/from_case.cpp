@@ -79,6 +79,8 @@ double omega_of(double k, double epsilon) {
   return epsilon / (double(k_omega_sst::kBetaStar) * std::max(k, double(kLeastK)));
 }
 
+double epsilon_of(double k, double omega) { return double(k_omega_sst::kBetaStar) * k * omega; }
+
 Options options_from_case(const Case& c) {
   Options o;
   o.gas = {c.fluid.gamma, c.fluid.gas_constant};

@@ -16,6 +16,8 @@ GasState gas_state(const Case& c, const StateSpec& spec, const Vec3& position, d
 
 /// omega = epsilon / (beta* k), 1/s
 double omega_of(double k, double epsilon);
+/// epsilon = beta* k omega, m2/s3
+double epsilon_of(double k, double omega);
 
 /// An orifice whose gas a valve drives: a disc of type "jet".
 struct DrivenInlet {

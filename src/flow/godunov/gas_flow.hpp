@@ -5,6 +5,7 @@
 #include "flow/godunov/boundary.hpp"
 #include "flow/godunov/flux_kernel.hpp"
 #include "flow/godunov/geometry.hpp"
+#include "grid/faces.hpp"
 
 namespace ejecta::godunov {
 
@@ -117,10 +118,8 @@ void GasFlow::fluxes(const Block& primitive, const Convection& convection) {
   const Real *mut = eddy_viscosity_.view().origin, *f1 = f1_.view().origin;
   const auto sweep = [&](auto axis) {
     constexpr int d = decltype(axis)::value;
-    Range3 faces = grid_.range();
-    (d == 0 ? faces.i1 : d == 1 ? faces.j1 : faces.k1) += 1;
-    for_each_cell(faces, FluxKernel<d, P, Convection>{w, view_block<Real>(flux_[d]), mut, f1, gas_,
-                                                      diffusion_, axes(), convection});
+    for_each_cell(faces_along(grid_, d), FluxKernel<d, P, Convection>{w, view_block<Real>(flux_[d]), mut, f1,
+                                                                      gas_, diffusion_, axes(), convection});
   };
   if (grid_.active(0)) sweep(std::integral_constant<int, 0>{});
   if constexpr (P::across) sweep(std::integral_constant<int, 1>{});

@@ -3,6 +3,8 @@
 #include <cmath>
 
 #include "base/parallel.hpp"
+#include "flow/stencil.hpp"
+#include "grid/faces.hpp"
 
 namespace ejecta::piso {
 namespace {
@@ -15,21 +17,10 @@ constexpr int kMostIterations = 200;
 template <class T>
 using Axes = std::array<T, 3>;
 
-EJECTA_KERNEL std::ptrdiff_t stride(const FieldView& v, int d) { return d == 0 ? 1 : d == 1 ? v.sy : v.sz; }
-
-/// Area of the lower face along D (m2; axisymmetric: per radian).
-template <int D>
-EJECTA_KERNEL Real area(const Axes<AxisLengths>& axis, int i, int j, int k) {
-  if constexpr (D == 0)
-    return axis[0].metrics.area[i] * axis[1].metrics.volume[j] * axis[2].metrics.volume[k];
-  else if constexpr (D == 1) return axis[0].metrics.volume[i] * axis[2].metrics.volume[k];
-  else return axis[0].metrics.volume[i] * axis[1].metrics.volume[j];
-}
-
-Real area(const Axes<AxisLengths>& axis, int d, const std::array<int, 3>& at) {
-  return d == 0   ? area<0>(axis, at[0], at[1], at[2])
-         : d == 1 ? area<1>(axis, at[0], at[1], at[2])
-                  : area<2>(axis, at[0], at[1], at[2]);
+Real face_area_along(int d, const Metrics (&m)[3], const int (&at)[3]) {
+  return d == 0   ? face_area<0>(m, at[0], at[1], at[2])
+         : d == 1 ? face_area<1>(m, at[0], at[1], at[2])
+                  : face_area<2>(m, at[0], at[1], at[2]);
 }
 
 /// Velocity of a face before the change of pressure, and the flow through it that a unit of change drives.
@@ -37,17 +28,17 @@ template <int D>
 struct FaceKernel {
   BlockView<const Real> middle;
   FieldView velocity, conductance;
-  Axes<AxisLengths> axis;
+  Metrics metrics[3];
   Real dt;
   EJECTA_KERNEL void operator()(int i, int j, int k) const {
     const std::ptrdiff_t o = middle.offset(i, j, k), s = stride(velocity, D);
-    const Metrics& m = axis[D].metrics;
+    const Metrics& m = metrics[D];
     const int at = D == 0 ? i : D == 1 ? j : k;
     const Real *u = middle.origin[kU + D] + o, *rho = middle.origin[kRho] + o, *p = middle.origin[kP] + o;
     const Real above = 1 - m.weight[at];
     const Real push = dt * m.inv_distance[at] / (rho[-s] + above * (rho[0] - rho[-s]));
     velocity.origin[o] = u[-s] + above * (u[0] - u[-s]) - Real(0.5) * push * (p[0] - p[-s]);
-    conductance.origin[o] = push * area<D>(axis, i, j, k);
+    conductance.origin[o] = push * face_area<D>(metrics, i, j, k);
   }
 };
 
@@ -58,27 +49,27 @@ struct CellKernel {
   BlockView<const Real> middle;
   FieldView rhs, diagonal;
   GasConstants gas;
-  Axes<AxisLengths> axis;
+  Metrics metrics[3];
   Axes<bool> active;
   Real dt;
   EJECTA_KERNEL Real operator()(int i, int j, int k) const {
     const std::ptrdiff_t o = middle.offset(i, j, k);
-    const Real volume = axis[0].metrics.volume[i] * axis[1].metrics.volume[j] * axis[2].metrics.volume[k];
+    const Real volume = metrics[0].volume[i] * metrics[1].volume[j] * metrics[2].volume[k];
     const Real stiffness = gas.gamma * gas.reference_pressure + (gas.gamma - 1) * middle.at(kP, o);
     Real out = 0, sum = volume / (dt * stiffness);
     if (active[0]) {
       const Real* q = velocity[0].origin + o;
-      out += area<0>(axis, i + 1, j, k) * q[1] - area<0>(axis, i, j, k) * q[0];
+      out += face_area<0>(metrics, i + 1, j, k) * q[1] - face_area<0>(metrics, i, j, k) * q[0];
       sum += conductance[0].origin[o] + conductance[0].origin[o + 1];
     }
     if (active[1]) {
       const Real* q = velocity[1].origin + o;
-      out += area<1>(axis, i, j, k) * (q[middle.sy] - q[0]);
+      out += face_area<1>(metrics, i, j, k) * (q[middle.sy] - q[0]);
       sum += conductance[1].origin[o] + conductance[1].origin[o + middle.sy];
     }
     if (active[2]) {
       const Real* q = velocity[2].origin + o;
-      out += area<2>(axis, i, j, k) * (q[middle.sz] - q[0]);
+      out += face_area<2>(metrics, i, j, k) * (q[middle.sz] - q[0]);
       sum += conductance[2].origin[o] + conductance[2].origin[o + middle.sz];
     }
     rhs.origin[o] = -out;
@@ -102,18 +93,10 @@ struct Matrix {
   }
 };
 
-/// By how much the pressure on a face exceeds that of the cell inside when the wave that leaves, p + rho c u,
-/// is continued to the face and the one that enters is not. Mean values of two cells would meet a wave at
-/// half its slope there and send much of it back.
-Real leaving(const BlockView<const Real>& w, int d, std::ptrdiff_t inside, Real outward, Real impedance) {
-  const std::ptrdiff_t inner = inside - std::ptrdiff_t(outward) * (d == 0 ? 1 : d == 1 ? w.sy : w.sz);
-  const auto rise = [&](int c) { return w.at(c, inside) - w.at(c, inner); };
-  return Real(0.25) * (rise(kP) + outward * impedance * rise(kU + d));
-}
-
 }  // namespace
 
-Acoustic::Acoustic(const Grid& grid, const GasConstants& gas) : grid_(grid), gas_(gas) {
+Acoustic::Acoustic(const Grid& grid, const GasConstants& gas)
+    : grid_(grid), gas_(gas), metrics_{grid.metrics(0), grid.metrics(1), grid.metrics(2)} {
   for (auto* fields : {&velocity_, &conductance_})
     for (Field& f : *fields) f = grid.make_field();
   for (Field* f : {&diagonal_, &change_, &residual_, &search_, &product_}) *f = grid.make_field();
@@ -122,70 +105,69 @@ Acoustic::Acoustic(const Grid& grid, const GasConstants& gas) : grid_(grid), gas
         static_cast<std::size_t>(grid.cells() / grid.n(face / 2)), Real(0));
 }
 
-void Acoustic::measure_faces(const Axes<AxisLengths>& axis, const Block& middle, Real dt) {
+void Acoustic::measure_faces(const Block& middle, Real dt) {
   const auto w = view_block<const Real>(middle);
   const auto sweep = [&](auto direction) {
     constexpr int d = decltype(direction)::value;
-    Range3 faces = grid_.range();
-    (d == 0 ? faces.i1 : d == 1 ? faces.j1 : faces.k1) += 1;
     if (grid_.active(d))
-      for_each_cell(faces, FaceKernel<d>{w, velocity_[d].view(), conductance_[d].view(), axis, dt});
+      for_each_cell(
+          faces_along(grid_, d),
+          FaceKernel<d>{
+              w, velocity_[d].view(), conductance_[d].view(), {metrics_[0], metrics_[1], metrics_[2]}, dt});
   };
   sweep(std::integral_constant<int, 0>{});
   sweep(std::integral_constant<int, 1>{});
   sweep(std::integral_constant<int, 2>{});
 }
 
-/// visit(face, cell of the face, offsets of: the face, the cell inside, the ghost; outward sign; i, j, k of
-/// the face)
 template <class Visit>
 void Acoustic::for_each_boundary_cell(const Boundaries& boundaries, const Visit& visit) const {
   const ConstFieldView v = diagonal_.view();
   for (int face = 0; face < 6; ++face) {
-    const int d = face / 2, a = d == 0 ? 1 : 0, b = d == 2 ? 1 : 2;
+    const int d = face / 2;
     if (!grid_.active(d) || boundaries.is_periodic(d)) continue;
-    const std::ptrdiff_t s = d == 0 ? 1 : d == 1 ? v.sy : v.sz;
-    for_each_index(grid_.n(b), [&](int q) {
-      for (int p = 0; p < grid_.n(a); ++p) {
-        std::array<int, 3> at{};
-        at[static_cast<std::size_t>(d)] = face % 2 ? grid_.n(d) : 0;
-        at[static_cast<std::size_t>(a)] = p;
-        at[static_cast<std::size_t>(b)] = q;
-        const std::ptrdiff_t o = at[0] + at[1] * v.sy + at[2] * v.sz;
-        visit(face, static_cast<std::size_t>(p + q * grid_.n(a)), o, face % 2 ? o - s : o,
-              face % 2 ? o : o - s, face % 2 ? Real(1) : Real(-1), at);
-      }
+    const std::ptrdiff_t s = stride(v, d);
+    for_each_face_cell(grid_, face, [&](std::size_t cell, const int(&at)[3]) {
+      const std::ptrdiff_t o = at[0] + at[1] * v.sy + at[2] * v.sz;
+      visit(BoundaryCell{boundaries.at(face, cell).type, static_cast<std::size_t>(face), cell, d,
+                         face % 2 ? Real(1) : Real(-1), face_area_along(d, metrics_, at), o,
+                         face % 2 ? o - s : o, face % 2 ? o : o - s, s});
     });
   }
 }
 
-void Acoustic::open_boundaries(const Axes<AxisLengths>& axis, const Boundaries& boundaries,
-                               const Block& middle) {
+/// By how much the pressure on a face exceeds that of the cell inside when the wave that leaves, p + rho c u,
+/// is continued to the face and the one that enters is not. Mean values of two cells would meet a wave at
+/// half its slope there and send much of it back.
+Real Acoustic::leaving(const BlockView<const Real>& w, const BoundaryCell& b, Real impedance) {
+  const std::ptrdiff_t inner = b.inside - std::ptrdiff_t(b.outward) * b.stride;
+  const auto rise = [&](int c) { return w.at(c, b.inside) - w.at(c, inner); };
+  return Real(0.25) * (rise(kP) + b.outward * impedance * rise(kU + b.axis));
+}
+
+void Acoustic::open_boundaries(const Boundaries& boundaries, const Block& middle) {
   const auto w = view_block<const Real>(middle);
-  for_each_boundary_cell(boundaries, [&](int face, std::size_t cell, std::ptrdiff_t o, std::ptrdiff_t inside,
-                                         std::ptrdiff_t ghost, Real outward, const std::array<int, 3>& at) {
-    const int d = face / 2;
-    const Real u = w.at(kU + d, inside), beyond = w.at(kU + d, ghost);
-    Real& q = velocity_[static_cast<std::size_t>(d)].view().origin[o];
-    Real& conductance = conductance_[static_cast<std::size_t>(d)].view().origin[o];
-    const Real size = area(axis, d, at);
-    const Real rho = w.at(kRho, inside);
-    const Real sound = 1 / (rho * std::sqrt(gas_.sound_speed_squared(rho, w.at(kP, inside))));  // 1/(rho c)
-    Real admittance = 0;
-    switch (boundaries.at(face, cell).type) {
+  for_each_boundary_cell(boundaries, [&](const BoundaryCell& b) {
+    const Real u = w.at(kU + b.axis, b.inside), beyond = w.at(kU + b.axis, b.ghost);
+    Real& q = velocity_[b.axis].view().origin[b.at];
+    Real& conductance = conductance_[b.axis].view().origin[b.at];
+    const Real rho = w.at(kRho, b.inside);
+    const Real sound = 1 / (rho * std::sqrt(gas_.sound_speed_squared(rho, w.at(kP, b.inside))));  // 1/(rho c)
+    Real& admittance = admittance_[b.face][b.cell];
+    admittance = 0;
+    switch (b.type) {
       case BoundaryType::pressure_outlet:
       case BoundaryType::free_stream:
         admittance = conductance;  // q is that of an inner face whose far side keeps its pressure
         break;
       case BoundaryType::wave_transmissive:
-        q = u + outward * sound *
-                    (Real(0.5) * (w.at(kP, inside) - w.at(kP, ghost)) +
-                     leaving(w, d, inside, outward, 1 / sound));
-        admittance = Real(0.5) * sound * size;  // in the middle of the step
+        q = u + b.outward * sound *
+                    (Real(0.5) * (w.at(kP, b.inside) - w.at(kP, b.ghost)) + leaving(w, b, 1 / sound));
+        admittance = Real(0.5) * sound * b.area;  // in the middle of the step
         break;
       case BoundaryType::total_pressure:
         q = u == -beyond ? Real(0) : beyond;
-        admittance = u == -beyond ? Real(0) : sound * size;
+        admittance = u == -beyond ? Real(0) : sound * b.area;
         break;
       case BoundaryType::velocity:
       case BoundaryType::jet:
@@ -195,11 +177,10 @@ void Acoustic::open_boundaries(const Axes<AxisLengths>& axis, const Boundaries& 
         q = 0;
     }
     conductance = 0;
-    admittance_[static_cast<std::size_t>(face)][cell] = admittance;
   });
 }
 
-double Acoustic::measure_cells(const Axes<AxisLengths>& axis, const Block& middle, Real dt) {
+double Acoustic::measure_cells(const Block& middle, Real dt) {
   return reduce_sum(grid_.range(),
                     CellKernel{{velocity_[0].view(), velocity_[1].view(), velocity_[2].view()},
                                {conductance_[0].view(), conductance_[1].view(), conductance_[2].view()},
@@ -207,7 +188,7 @@ double Acoustic::measure_cells(const Axes<AxisLengths>& axis, const Block& middl
                                residual_.view(),
                                diagonal_.view(),
                                gas_,
-                               axis,
+                               {metrics_[0], metrics_[1], metrics_[2]},
                                {grid_.active(0), grid_.active(1), grid_.active(2)},
                                dt});
 }
@@ -253,20 +234,19 @@ void Acoustic::conjugate_gradients(const Boundaries& boundaries, double enough) 
   boundaries.extend(change_);
 }
 
-void Acoustic::correct_faces(const Axes<AxisLengths>& axis) {
+void Acoustic::correct_faces() {
   const ConstFieldView x = change_.view();
   const auto sweep = [&](auto direction) {
     constexpr int d = decltype(direction)::value;
     if (!grid_.active(d)) return;
-    Range3 faces = grid_.range();
-    (d == 0 ? faces.i1 : d == 1 ? faces.j1 : faces.k1) += 1;
     const FieldView q = velocity_[d].view();
     const ConstFieldView c = conductance_[d].view();
     const std::ptrdiff_t s = stride(q, d);
+    const Metrics metrics[3]{metrics_[0], metrics_[1], metrics_[2]};
     for_each_cell(
-        faces, [=](int i, int j, int k) __attribute__((always_inline)) {
+        faces_along(grid_, d), [=](int i, int j, int k) __attribute__((always_inline)) {
           const std::ptrdiff_t o = i + j * q.sy + k * q.sz;
-          const Real size = area<d>(axis, i, j, k);
+          const Real size = face_area<d>(metrics, i, j, k);
           const Real flow = c.origin[o] * (x.origin[o] - x.origin[o - s]);
           q.origin[o] -= size > 0 ? flow / size : Real(0);
         });
@@ -276,40 +256,33 @@ void Acoustic::correct_faces(const Axes<AxisLengths>& axis) {
   sweep(std::integral_constant<int, 2>{});
 }
 
-void Acoustic::solve(const Axes<AxisLengths>& axis, const Boundaries& boundaries, const Block& middle,
-                     double dt) {
-  measure_faces(axis, middle, Real(dt));
-  open_boundaries(axis, boundaries, middle);
-  const double first = measure_cells(axis, middle, Real(dt));
-  for_each_boundary_cell(boundaries, [&](int face, std::size_t cell, std::ptrdiff_t, std::ptrdiff_t inside,
-                                         std::ptrdiff_t, Real, const std::array<int, 3>&) {
-    diagonal_.view().origin[inside] += admittance_[static_cast<std::size_t>(face)][cell];
+void Acoustic::solve(const Boundaries& boundaries, const Block& middle, double dt) {
+  measure_faces(middle, Real(dt));
+  open_boundaries(boundaries, middle);
+  const double first = measure_cells(middle, Real(dt));
+  for_each_boundary_cell(boundaries, [&](const BoundaryCell& b) {
+    diagonal_.view().origin[b.inside] += admittance_[b.face][b.cell];
   });
   conjugate_gradients(boundaries, kTolerance * kTolerance * first);
-  correct_faces(axis);
-  for_each_boundary_cell(boundaries, [&](int face, std::size_t cell, std::ptrdiff_t o, std::ptrdiff_t inside,
-                                         std::ptrdiff_t ghost, Real outward, const std::array<int, 3>& at) {
-    const Real admittance = admittance_[static_cast<std::size_t>(face)][cell];
+  correct_faces();
+  for_each_boundary_cell(boundaries, [&](const BoundaryCell& b) {
+    const Real admittance = admittance_[b.face][b.cell];
     if (admittance == 0) return;
-    const int d = face / 2;
-    const Real size = area(axis, d, at);
-    velocity_[static_cast<std::size_t>(d)].view().origin[o] +=
-        outward * admittance / size * change_.view().origin[inside];
-    const BoundaryType type = boundaries.at(face, cell).type;
-    if (type == BoundaryType::pressure_outlet || type == BoundaryType::free_stream)
-      change_.view().origin[ghost] = 0;
+    velocity_[b.axis].view().origin[b.at] +=
+        b.outward * admittance / b.area * change_.view().origin[b.inside];
+    if (b.type == BoundaryType::pressure_outlet || b.type == BoundaryType::free_stream)
+      change_.view().origin[b.ghost] = 0;
   });
 }
 
 void Acoustic::let_waves_out(const Boundaries& boundaries, Block& middle) const {
   const auto w = view_block<const Real>(middle);
   Real* pressure = middle[kP].view().origin;
-  for_each_boundary_cell(boundaries, [&](int face, std::size_t cell, std::ptrdiff_t, std::ptrdiff_t inside,
-                                         std::ptrdiff_t ghost, Real outward, const std::array<int, 3>&) {
-    if (boundaries.at(face, cell).type != BoundaryType::wave_transmissive) return;
-    const Real rho = w.at(kRho, inside);
-    const Real impedance = rho * std::sqrt(gas_.sound_speed_squared(rho, w.at(kP, inside)));
-    pressure[ghost] += 2 * leaving(w, face / 2, inside, outward, impedance);
+  for_each_boundary_cell(boundaries, [&](const BoundaryCell& b) {
+    if (b.type != BoundaryType::wave_transmissive) return;
+    const Real rho = w.at(kRho, b.inside);
+    const Real impedance = rho * std::sqrt(gas_.sound_speed_squared(rho, w.at(kP, b.inside)));
+    pressure[b.ghost] += 2 * leaving(w, b, impedance);
   });
 }
 

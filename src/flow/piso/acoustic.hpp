@@ -22,8 +22,7 @@ class Acoustic {
 
   /// `middle`: primitive variables with ghosts. Conjugate gradients from the change of the step before.
   /// Allocates nothing.
-  void solve(const std::array<AxisLengths, 3>& axis, const Boundaries& boundaries, const Block& middle,
-             double dt);
+  void solve(const Boundaries& boundaries, const Block& middle, double dt);
 
   /// Ghost pressures of the finished middle on transmissive faces, such that the mean with the cell inside is
   /// the pressure of a wave that leaves.
@@ -35,17 +34,27 @@ class Acoustic {
   int iterations() const { return iterations_; }  ///< of the last solve
 
  private:
-  void measure_faces(const std::array<AxisLengths, 3>& axis, const Block& middle, Real dt);
-  void open_boundaries(const std::array<AxisLengths, 3>& axis, const Boundaries& boundaries,
-                       const Block& middle);
-  double measure_cells(const std::array<AxisLengths, 3>& axis, const Block& middle, Real dt);
+  /// A face of a cell on the boundary of the box.
+  struct BoundaryCell {
+    BoundaryType type;
+    std::size_t face, cell;  ///< of Boundaries::at
+    int axis;
+    Real outward;                              ///< 1 or -1
+    Real area;                                 ///< m2
+    std::ptrdiff_t at, inside, ghost, stride;  ///< offsets of the face and of the cells on its sides
+  };
+  static Real leaving(const BlockView<const Real>& w, const BoundaryCell& b, Real impedance);
+  void measure_faces(const Block& middle, Real dt);
+  void open_boundaries(const Boundaries& boundaries, const Block& middle);
+  double measure_cells(const Block& middle, Real dt);
   void conjugate_gradients(const Boundaries& boundaries, double enough);
-  void correct_faces(const std::array<AxisLengths, 3>& axis);
+  void correct_faces();
   template <class Visit>
   void for_each_boundary_cell(const Boundaries& boundaries, const Visit& visit) const;
 
   const Grid& grid_;
   GasConstants gas_;
+  Metrics metrics_[3];
   std::array<Field, 3> velocity_, conductance_;  ///< m/s; m3/s/Pa
   std::array<std::vector<Real>, 6> admittance_;  ///< per cell of a face of the box, m3/s/Pa
   Field diagonal_, change_, residual_, search_, product_;

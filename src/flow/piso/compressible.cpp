@@ -134,7 +134,7 @@ void Compressible::step(double dt) {
                                                   eddy_viscosity_.view().origin, f1_.view().origin,
                                                   diffusion_, axes(), Real(dt)});
   boundaries_.fill(middle_);
-  acoustic_.solve(axes(), boundaries_, middle_, dt);
+  acoustic_.solve(boundaries_, middle_, dt);
   for_each_cell(grid_.range(), PressureKernel<P>{view_block<Real>(middle_), next_[kP].view().origin,
                                                  acoustic_.change().view().origin, gas_, axes(), Real(dt)});
   std::swap(middle_[kP], next_[kP]);

@@ -26,18 +26,23 @@ struct Rates {
   }
 };
 
+Rates rates(const Grid& grid, const std::array<ConstFieldView, 3>& u, ConstFieldView nut, double nu) {
+  return {u,
+          nut,
+          grid.metrics(0),
+          grid.metrics(1),
+          grid.metrics(2),
+          Real(grid.active(0)),
+          Real(grid.active(1)),
+          Real(grid.active(2)),
+          static_cast<Real>(nu)};
+}
+
 }  // namespace
 
 double Incompressible::stable_dt(double courant) {
-  const Rates r = {std::as_const(*this).views(u_),
-                   turbulence_ ? turbulence_->eddy_viscosity() : ConstFieldView{},
-                   grid_.metrics(0),
-                   grid_.metrics(1),
-                   grid_.metrics(2),
-                   Real(grid_.active(0)),
-                   Real(grid_.active(1)),
-                   Real(grid_.active(2)),
-                   static_cast<Real>(setup_.viscosity)};
+  const Rates r = rates(grid_, std::as_const(*this).views(u_),
+                        turbulence_ ? turbulence_->eddy_viscosity() : ConstFieldView{}, setup_.viscosity);
   // Heun's method is stable to -2 on the negative real axis, where upwinding reaches -2 sum |u| dt/h and
   // viscosity -4 nu sum dt/h2; k and epsilon, explicit Euler, stay positive under the same sum.
   const Real by_courant = static_cast<Real>(1.0 / courant);
@@ -59,15 +64,7 @@ double Incompressible::stable_dt(double courant) {
 
 double Incompressible::courant(double dt) const {
   if (convection_ >= 0.0) return dt * convection_;
-  const Rates r = {views(u_),
-                   {},
-                   grid_.metrics(0),
-                   grid_.metrics(1),
-                   grid_.metrics(2),
-                   Real(grid_.active(0)),
-                   Real(grid_.active(1)),
-                   Real(grid_.active(2)),
-                   0};
+  const Rates r = rates(grid_, views(u_), {}, 0.0);
   return dt * double(reduce_max(grid_.range(), [=](int i, int j, int k) { return r.convection(i, j, k); }));
 }
 
