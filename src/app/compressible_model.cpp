@@ -149,18 +149,20 @@ class CompressibleModel : public FlowModel {
   std::vector<Field*> state_fields() override { return solver_->state(); }
   std::vector<double> state_numbers() const override {
     const BoundaryLedger& l = solver_->ledger();
-    return {l.mass,
-            l.mass_inward,
-            l.energy,
-            l.momentum.x(),
-            l.momentum.y(),
-            l.momentum.z(),
-            momentum_at_start_.x(),
-            momentum_at_start_.y(),
-            momentum_at_start_.z(),
-            mass_at_start_,
-            energy_at_start_,
-            fastest_};
+    std::vector<double> all{l.mass,
+                            l.mass_inward,
+                            l.energy,
+                            l.momentum.x(),
+                            l.momentum.y(),
+                            l.momentum.z(),
+                            momentum_at_start_.x(),
+                            momentum_at_start_.y(),
+                            momentum_at_start_.z(),
+                            mass_at_start_,
+                            energy_at_start_,
+                            fastest_};
+    for (const double* v : solver_->state_numbers()) all.push_back(*v);
+    return all;
   }
   void restore_numbers(std::span<const double> n, double time) override {
     time_ = time;
@@ -169,6 +171,7 @@ class CompressibleModel : public FlowModel {
     for (double* v : {&l.mass, &l.mass_inward, &l.energy}) *v = in.number();
     for (Vec3* v : {&l.momentum, &momentum_at_start_}) *v = in.vec3();
     for (double* v : {&mass_at_start_, &energy_at_start_, &fastest_}) *v = in.number();
+    for (double* v : solver_->state_numbers()) *v = in.number();
     in.end();
     if (jet_) let_in(time);
   }

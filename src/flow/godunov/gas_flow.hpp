@@ -66,6 +66,7 @@ class GasFlow {
   BoundaryLedger& ledger() { return ledger_; }
   /// Everything a resume needs besides the ledger.
   virtual std::vector<Field*> state();
+  virtual std::vector<double*> state_numbers() { return {}; }
 
  protected:
   GasFlow(const Grid& grid, const Options& options);

@@ -31,6 +31,7 @@ class Acoustic {
   const Field& velocity(int axis) const { return velocity_[static_cast<std::size_t>(axis)]; }  ///< m/s
   const Field& change() const { return change_; }  ///< dp, Pa; one layer of ghosts
   Field& change() { return change_; }
+  double& last_dt() { return last_dt_; }          ///< s, of change()
   int iterations() const { return iterations_; }  ///< of the last solve
 
  private:
@@ -41,11 +42,13 @@ class Acoustic {
     int axis;
     Real outward;                              ///< 1 or -1
     Real area;                                 ///< m2
+    Real inv_width;                            ///< of the cell, 1/m
     std::ptrdiff_t at, inside, ghost, stride;  ///< offsets of the face and of the cells on its sides
   };
   static Real leaving(const BlockView<const Real>& w, const BoundaryCell& b, Real impedance);
   void measure_faces(const Block& middle, Real dt);
-  void open_boundaries(const Boundaries& boundaries, const Block& middle);
+  /// `since`: this step over the one before
+  void open_boundaries(const Boundaries& boundaries, const Block& middle, Real since);
   double measure_cells(const Block& middle, Real dt);
   void conjugate_gradients(const Boundaries& boundaries, double enough);
   void correct_faces();
@@ -59,6 +62,7 @@ class Acoustic {
   std::array<std::vector<Real>, 6> admittance_;  ///< per cell of a face of the box, m3/s/Pa
   Field diagonal_, change_, residual_, search_, product_;
   int iterations_ = 0;
+  double last_dt_ = 0.0;  ///< s, of change_
 };
 
 }  // namespace ejecta::piso

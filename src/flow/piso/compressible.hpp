@@ -25,6 +25,7 @@ class Compressible : public godunov::GasFlow {
   double stable_dt(double courant) override;
   void advance(double dt) override;
   std::vector<Field*> state() override;
+  std::vector<double*> state_numbers() override { return {&acoustic_.last_dt()}; }
   int iterations() const { return acoustic_.iterations(); }  ///< of the last step's pressure equation
 
  private:
