@@ -22,9 +22,6 @@ using namespace godunov;
 class CompressibleModel : public FlowModel {
  public:
   CompressibleModel(const Case& c, const Grid& grid) : case_(c), grid_(grid) {
-    if (!c.bodies.empty())
-      throw InputError(
-          "bodies move in flow.solver = \"incompressible\"; \"compressible\" computes the air alone");
     solver_ = solver_from_case(c, grid, inlets_);
     solver_->keep_ledger();
     if (!inlets_.empty()) drive_ = std::make_unique<JetDrive>(c);
@@ -47,11 +44,11 @@ class CompressibleModel : public FlowModel {
                     std::max(0.5 * dt, case_.run.courant * h / std::max(jet_->fastest(time + dt, z), 1e-30)));
   }
   double courant(double dt) const override { return dt / solver_->stable_dt(1.0); }
-  void advance(double time, double dt, SolidMask&) override {
+  void advance(double time, double dt, SolidMask& solids) override {
     const ScopedTimer timer(seconds_);
     if (drive_) drive_->apply(time + 0.5 * dt, *solver_, inlets_);
     if (jet_) let_in(time + 0.5 * dt);
-    solver_->advance(dt);
+    solver_->advance(dt, solids);
     fastest_ = std::max(fastest_, fastest());
     time_ = time + dt;
     ++calls_;
@@ -117,15 +114,18 @@ class CompressibleModel : public FlowModel {
   void report(nlohmann::ordered_json& result) const override {
     const BoundaryLedger& l = solver_->ledger();
     const double mass = solver_->total(kRho), energy = solver_->total(kP);
-    Vec3 lost = momentum() - momentum_at_start_ - l.momentum;
+    Vec3 lost = momentum() - momentum_at_start_ - l.momentum - l.momentum_of_solids;
     if (grid_.axisymmetric()) lost.x() = 0.0;  // radial momentum is not conserved
     const double scale = std::max({l.momentum.norm(), (momentum() - momentum_at_start_).norm(), 1e-30});
     auto& ledger = result["ledger"];
     ledger["mass_relative_residual"] = std::abs(mass - mass_at_start_ - l.mass) / mass_at_start_;
     ledger["momentum_relative_residual"] = lost.norm() / scale;
-    ledger["energy_relative_residual"] = std::abs(energy - energy_at_start_ - l.energy) /
+    ledger["energy_relative_residual"] = std::abs(energy - energy_at_start_ - l.energy - l.work_of_solids) /
                                          std::max({std::abs(energy_at_start_), std::abs(l.energy), 1e-30});
     ledger["mass_kg"] = mass;
+    if (!case_.bodies.empty())
+      ledger["impulse_on_solids_N_s"] = {-l.momentum_of_solids.x(), -l.momentum_of_solids.y(),
+                                         -l.momentum_of_solids.z()};
     result["fastest_m_s"] = fastest_;
     if (case_.exact.density)
       add_errors(result, "density", *case_.exact.density, [](const GasState& s) { return s.density; });
@@ -160,7 +160,11 @@ class CompressibleModel : public FlowModel {
                             momentum_at_start_.z(),
                             mass_at_start_,
                             energy_at_start_,
-                            fastest_};
+                            fastest_,
+                            l.momentum_of_solids.x(),
+                            l.momentum_of_solids.y(),
+                            l.momentum_of_solids.z(),
+                            l.work_of_solids};
     for (const double* v : solver_->state_numbers()) all.push_back(*v);
     return all;
   }
@@ -171,6 +175,8 @@ class CompressibleModel : public FlowModel {
     for (double* v : {&l.mass, &l.mass_inward, &l.energy}) *v = in.number();
     for (Vec3* v : {&l.momentum, &momentum_at_start_}) *v = in.vec3();
     for (double* v : {&mass_at_start_, &energy_at_start_, &fastest_}) *v = in.number();
+    l.momentum_of_solids = in.vec3();
+    l.work_of_solids = in.number();
     for (double* v : solver_->state_numbers()) *v = in.number();
     in.end();
     if (jet_) let_in(time);

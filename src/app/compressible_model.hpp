@@ -3,7 +3,7 @@
 
 namespace ejecta {
 
-/// Compressible flow of a case without bodies: shock tubes, waves, jets from their orifice.
+/// Compressible flow of a case: shock tubes, waves, jets from their orifice, boxes with bodies.
 std::unique_ptr<FlowModel> make_compressible_model(const Case& c, const Grid& grid);
 
 }  // namespace ejecta

@@ -123,7 +123,7 @@ void CoupledModel::build_step() {
                        ++flow_steps_;
                      }});
   if (coupling_)
-    step_.push_back({"loads.collect", "F = -rho sum(impulse)/dt + rho V a - rho V g, T = sum r x F",
+    step_.push_back({"loads.collect", "F = -sum(impulse)/dt + rho V a - rho V g, T = sum r x F",
                      [this](double time, double dt) {
                        if (!air_) {
                          std::fill(loads_.begin(), loads_.end(), Load{});

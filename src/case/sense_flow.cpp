@@ -40,6 +40,9 @@ void sense_run(const Case& c, Findings& found) {
                 fmt::format("at most {}", most), "courant = 1");
 
   if (!has_flow(c)) return;
+  if (c.flow.solver == FlowSolver::compressible && !c.bodies.empty())
+    found.error("flow.solver", "\"compressible\" computes the air alone, not what it does to bodies",
+                "\"incompressible\" or \"compressible-piso\"", "solver = \"compressible-piso\"");
   if (!c.fluid.ideal_gas && c.fluid.density <= 0.0)
     found.error("fluid.density", "a fluid that is no ideal gas needs its density", "a density, more than 0",
                 "density = \"998 kg/m3\"");

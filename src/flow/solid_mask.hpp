@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <array>
 #include <vector>
 
@@ -27,13 +28,21 @@ struct SolidCell {
 /// adds up in `impulse` what it had to do to the fluid.
 struct SolidMask {
   std::vector<SolidCell> cells;
-  /// Integral of the forcing over the last flow step and the cell's volume, m4/s (times density: N s).
+  /// What the last flow step gave to the fluid of the cell, N s.
   std::vector<std::array<double, 3>> impulse;
+  std::vector<double> work;                 ///< the same of kinetic energy, J; compressible flow alone
   std::vector<std::array<Real, 3>> target;  ///< scratch of the flow
 
   void resize_scratch() {
     impulse.resize(cells.size());
+    work.resize(cells.size());
     target.resize(cells.size());
+  }
+  /// Nothing given yet.
+  void begin_step() {
+    resize_scratch();
+    std::fill(impulse.begin(), impulse.end(), std::array<double, 3>{0, 0, 0});
+    std::fill(work.begin(), work.end(), 0.0);
   }
 };
 

@@ -129,7 +129,7 @@ void ResolvedCoupling::collect(std::span<const Body> bodies, const SolidMask& ma
   for (std::size_t n = 0; n < mask.cells.size(); ++n) {
     const SolidCell& c = mask.cells[n];
     const std::size_t b = static_cast<std::size_t>(c.body);
-    const Vec3 force = -density_ / dt * Vec3(mask.impulse[n][0], mask.impulse[n][1], mask.impulse[n][2]);
+    const Vec3 force = -1.0 / dt * Vec3(mask.impulse[n][0], mask.impulse[n][1], mask.impulse[n][2]);
     loads[b].force += force;
     loads[b].torque += (grid_.centre(c.i, c.j, c.k) - bodies[b].position).cross(force);
     volume[b] += double(c.weight) * grid_.volume(c.i, c.j, c.k);

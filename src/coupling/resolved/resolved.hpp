@@ -9,7 +9,7 @@
 
 namespace ejecta {
 
-/// Resolved two-way coupling of bodies and incompressible flow. Bodies become cells the flow must move with;
+/// Resolved two-way coupling of bodies and flow. Bodies become cells the flow must move with;
 /// what the flow had to do to the fluid there, with the opposite sign, is what the fluid does to the bodies.
 class ResolvedCoupling {
  public:
@@ -19,7 +19,7 @@ class ResolvedCoupling {
   /// Lists the cells whose centres lie inside bodies, body by body.
   void map(std::span<const Body> bodies, SolidMask& mask);
   /// Force and torque on every body over the last flow step of length dt:
-  ///   F = -rho sum(impulse) / dt + rho V a - rho V g,
+  ///   F = -sum(impulse) / dt + rho V a - rho V g,
   /// where the second term returns the inertia of the fictitious fluid inside the body (Uhlmann 2005, eq.
   /// 18), with the body's acceleration over the step before.
   void collect(std::span<const Body> bodies, const SolidMask& mask, double dt, std::span<Load> loads);

@@ -5,6 +5,8 @@
 #include "flow/godunov/boundary.hpp"
 #include "flow/godunov/flux_kernel.hpp"
 #include "flow/godunov/geometry.hpp"
+#include "flow/godunov/turbulence_kernel.hpp"
+#include "flow/solid_mask.hpp"
 #include "grid/faces.hpp"
 
 namespace ejecta::godunov {
@@ -24,10 +26,12 @@ struct Options {
 /// What has entered through the boundaries since the start (axisymmetric: the full circle). Momentum counts
 /// the pressure from the reference.
 struct BoundaryLedger {
-  double mass = 0.0;         ///< kg
-  double mass_inward = 0.0;  ///< kg, inflow alone
-  double energy = 0.0;       ///< J
-  Vec3 momentum{0, 0, 0};    ///< N s
+  double mass = 0.0;                 ///< kg
+  double mass_inward = 0.0;          ///< kg, inflow alone
+  double energy = 0.0;               ///< J
+  Vec3 momentum{0, 0, 0};            ///< N s
+  Vec3 momentum_of_solids{0, 0, 0};  ///< N s, what solids in the flow gave it
+  double work_of_solids = 0.0;       ///< J
 };
 
 /// Compressible flow of an ideal gas in conservative finite volumes, on Cartesian and axisymmetric grids: the
@@ -50,8 +54,10 @@ class GasFlow {
   /// Largest stable step for a Courant number, s. Throws DivergedError with place and state when a cell holds
   /// no number.
   virtual double stable_dt(double courant) = 0;
-  /// One step. Allocates nothing.
-  virtual void advance(double dt) = 0;
+  /// One step, with the cells of `solids` driven to their velocity. Allocates nothing.
+  virtual void advance(double dt, SolidMask& solids) = 0;
+  /// One step without solids.
+  void advance(double dt) { advance(dt, no_solids_); }
 
   /// Integral of a conserved component over the box (axisymmetric: the full circle).
   double total(Component c) const;
@@ -88,7 +94,7 @@ class GasFlow {
   template <class P, class Convection>
   void fluxes(const Block& primitive, const Convection& convection);
   /// k, e and the eddy viscosity after their sources over dt.
-  void advance_turbulence(double dt);
+  void advance_turbulence(double dt, const Dilatation& dilatation);
   void add_to_ledger(double seconds);
   /// Throws DivergedError that names a cell which is no gas.
   [[noreturn]] void report_divergence() const;
@@ -105,12 +111,13 @@ class GasFlow {
 
  private:
   template <bool Sst, bool RoundJet>
-  void run_turbulence(double dt);
+  void run_turbulence(double dt, const Dilatation& dilatation);
   void set_turbulence_constants();
   void measure_walls();
   std::array<std::vector<Real>, 3> wall_distance_;
   bool started_ = false;
   BoundaryLedger ledger_;
+  SolidMask no_solids_;
 };
 
 template <class P, class Convection>

@@ -3,7 +3,6 @@
 
 #include "base/parallel.hpp"
 #include "flow/godunov/gas_flow.hpp"
-#include "flow/godunov/turbulence_kernel.hpp"
 
 namespace ejecta::godunov {
 
@@ -36,7 +35,7 @@ void GasFlow::measure_walls() {
 }
 
 template <bool Sst, bool RoundJet>
-void GasFlow::run_turbulence(double dt) {
+void GasFlow::run_turbulence(double dt, const Dilatation& dilatation) {
   if (!started_) measure_walls();
   started_ = true;
   boundaries_.fill(w_);
@@ -53,7 +52,8 @@ void GasFlow::run_turbulence(double dt) {
                       axes(),
                       Real(options_.viscosity),
                       Real(dt),
-                      options_.compressibility_correction});
+                      options_.compressibility_correction,
+                      dilatation});
   };
   grid_.active(1) ? run(std::true_type{}) : run(std::false_type{});
   for (const int c : {kK, kE}) std::swap(w_[static_cast<std::size_t>(c)], next_[static_cast<std::size_t>(c)]);
@@ -61,10 +61,11 @@ void GasFlow::run_turbulence(double dt) {
   if constexpr (Sst) boundaries_.extend(f1_);
 }
 
-void GasFlow::advance_turbulence(double dt) {
+void GasFlow::advance_turbulence(double dt, const Dilatation& dilatation) {
   if (!turbulent()) return;
-  if (options_.turbulence == TurbulenceModel::k_omega_sst) run_turbulence<true, false>(dt);
-  else options_.round_jet_correction ? run_turbulence<false, true>(dt) : run_turbulence<false, false>(dt);
+  if (options_.turbulence == TurbulenceModel::k_omega_sst) run_turbulence<true, false>(dt, dilatation);
+  else if (options_.round_jet_correction) run_turbulence<false, true>(dt, dilatation);
+  else run_turbulence<false, false>(dt, dilatation);
 }
 
 }  // namespace ejecta::godunov

@@ -64,8 +64,8 @@ void Solver::run_stages(double dt) {
   for (const Stage& stage : stages) run(stage, &stage == stages.data() ? start_ : u_);
 }
 
-void Solver::advance(double dt) {
-  advance_turbulence(dt);
+void Solver::advance(double dt, SolidMask&) {
+  advance_turbulence(dt, {});
   with_physics([&](auto physics) { run_stages<decltype(physics)>(dt); });
 }
 

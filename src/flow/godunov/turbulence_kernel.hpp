@@ -21,6 +21,13 @@ struct TurbulencePair {
   Real k, e;
 };
 
+/// Where div u comes from: of the velocity of the cells, or of that on the faces, -dp/(K dt) with K = gamma
+/// p_ref + (gamma - 1) p', where a pressure equation has made it so. Beside a solid the former is wrong.
+struct Dilatation {
+  const Real* pressure_change = nullptr;  ///< Pa per cell; null: the former
+  Real inv_dt = 0;                        ///< 1/s
+};
+
 /// Floors, far below any turbulence that matters.
 inline constexpr Real kLeastK = Real(1e-8), kLeastE = Real(1e-8);
 
@@ -94,6 +101,7 @@ struct TurbulenceKernel {
   std::array<AxisLengths, 3> axis;
   Real viscosity, dt;
   bool compressible;
+  Dilatation dilatation;
 
   EJECTA_KERNEL Real derivative(int c, int d, std::ptrdiff_t o, std::ptrdiff_t s, int index) const {
     const Real* v = w.origin[static_cast<std::size_t>(c)] + o;
@@ -132,7 +140,9 @@ struct TurbulenceKernel {
     p.k = w.at(kK, o) > kLeastK ? w.at(kK, o) : kLeastK;
     p.e = w.at(kE, o) > kLeastE ? w.at(kE, o) : kLeastE;
     p.strain2 = strain_squared(p.gradient);
-    p.divergence = p.gradient.xx + p.gradient.yy + p.gradient.zz;
+    const Real stiffness = gas.gamma * gas.reference_pressure + (gas.gamma - 1) * w.at(kP, o);
+    p.divergence = dilatation.pressure_change ? -dilatation.pressure_change[o] * dilatation.inv_dt / stiffness
+                                              : p.gradient.xx + p.gradient.yy + p.gradient.zz;
     p.sound_squared = gas.sound_speed_squared(rho, w.at(kP, o));
     TurbulencePair after;
     Real mut;

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "base/parallel.hpp"
+#include "flow/piso/forcing.hpp"
 #include "flow/stencil.hpp"
 #include "grid/faces.hpp"
 
@@ -118,6 +119,34 @@ void Acoustic::measure_faces(const Block& middle, Real dt) {
   sweep(std::integral_constant<int, 0>{});
   sweep(std::integral_constant<int, 1>{});
   sweep(std::integral_constant<int, 2>{});
+}
+
+/// Faces of solid cells: the plain mean of the two cells, with what the pressure makes of the fluid's one
+/// within half a step. Between two cells of a solid its rigid velocity, whatever the pressure: gas must not
+/// gather in a cell whose pressure no cell of the fluid feels.
+void Acoustic::meet_solids(const Block& middle, Real dt, const SolidMask& solids, const Field& inside_solid) {
+  using Cell = std::array<int, 3>;
+  const auto w = view_block<const Real>(middle);
+  const ConstFieldView inside = inside_solid.view();
+  const auto velocity = [&](int d, const Cell& at) {
+    const std::ptrdiff_t o = w.offset(at[0], at[1], at[2]);
+    const Real gradient =
+        cell_gradient(w.origin[kP] + o, stride(inside, d), grid_.metrics(d), at[static_cast<std::size_t>(d)]);
+    return w.at(kU + d, o) - Real(0.5) * dt * (1 - inside(at[0], at[1], at[2])) * gradient / w.at(kRho, o);
+  };
+  for_each_face_of_solids(
+      grid_, solids,
+      [&](const SolidCell& c, int d, const Cell& below, const Cell& above, const Cell& beyond) {
+        const auto axis = static_cast<std::size_t>(d);
+        Real& q = velocity_[axis](above[0], above[1], above[2]);
+        if (inside(beyond[0], beyond[1], beyond[2]) > 0) {
+          q = c.solid[axis];
+          conductance_[axis](above[0], above[1], above[2]) = 0;
+        } else {
+          const Real weight = grid_.metrics(d).weight[above[axis]];
+          q = weight * velocity(d, below) + (1 - weight) * velocity(d, above);
+        }
+      });
 }
 
 template <class Visit>
@@ -265,8 +294,10 @@ void Acoustic::correct_faces() {
   sweep(std::integral_constant<int, 2>{});
 }
 
-void Acoustic::solve(const Boundaries& boundaries, const Block& middle, double dt) {
+void Acoustic::solve(const Boundaries& boundaries, const Block& middle, double dt, const SolidMask& solids,
+                     const Field& inside_solid) {
   measure_faces(middle, Real(dt));
+  meet_solids(middle, Real(dt), solids, inside_solid);
   open_boundaries(boundaries, middle, Real(last_dt_ > 0.0 ? dt / last_dt_ : 0.0));
   last_dt_ = dt;
   const double first = measure_cells(middle, Real(dt));

@@ -1,6 +1,7 @@
 #pragma once
 #include "flow/godunov/boundary.hpp"
 #include "flow/godunov/geometry.hpp"
+#include "flow/solid_mask.hpp"
 
 namespace ejecta::piso {
 
@@ -21,8 +22,10 @@ class Acoustic {
   Acoustic(const Grid& grid, const GasConstants& gas);
 
   /// `middle`: primitive variables with ghosts. Conjugate gradients from the change of the step before.
-  /// Allocates nothing.
-  void solve(const Boundaries& boundaries, const Block& middle, double dt);
+  /// Faces of `solids` take the velocity of the cells beside them; `inside_solid`: forcing weight of every
+  /// cell. Allocates nothing.
+  void solve(const Boundaries& boundaries, const Block& middle, double dt, const SolidMask& solids,
+             const Field& inside_solid);
 
   /// Ghost pressures of the finished middle on transmissive faces, such that the mean with the cell inside is
   /// the pressure of a wave that leaves.
@@ -47,6 +50,7 @@ class Acoustic {
   };
   static Real leaving(const BlockView<const Real>& w, const BoundaryCell& b, Real impedance);
   void measure_faces(const Block& middle, Real dt);
+  void meet_solids(const Block& middle, Real dt, const SolidMask& solids, const Field& inside_solid);
   /// `since`: this step over the one before
   void open_boundaries(const Boundaries& boundaries, const Block& middle, Real since);
   double measure_cells(const Block& middle, Real dt);

@@ -6,6 +6,8 @@
 #include "base/parallel.hpp"
 #include "flow/godunov/update_kernel.hpp"
 #include "flow/piso/carried.hpp"
+#include "flow/piso/forcing.hpp"
+#include "flow/turbulence/closures.hpp"
 
 namespace ejecta::piso {
 namespace {
@@ -90,7 +92,8 @@ Compressible::Compressible(const Grid& grid, const Options& options)
       acoustic_(grid, gas_),
       smoother_(grid),
       start_(make_block(grid)),
-      middle_(make_block(grid)) {}
+      middle_(make_block(grid)),
+      inside_solid_(grid.make_field()) {}
 
 double Compressible::stable_dt(double courant) {
   boundaries_.fill(w_);
@@ -128,16 +131,76 @@ void Compressible::smooth_increments(double dt) {
   for_each_cell(grid_.range(), PrimitiveKernel<P>{view_block<const Real>(u_), view_block<Real>(w_), gas_});
 }
 
+/// Inside a solid turbulence only decays, and there is no eddy viscosity; `next_` holds what was there before
+/// the sources.
+void Compressible::still_solids(const SolidMask& solids, Real dt) {
+  const bool sst = options_.turbulence == TurbulenceModel::k_omega_sst;
+  for_each_index(static_cast<int>(solids.cells.size()), [&](int n) {
+    const SolidCell& c = solids.cells[static_cast<std::size_t>(n)];
+    const Real k = next_[kK](c.i, c.j, c.k), e = next_[kE](c.i, c.j, c.k);
+    const Real rate = sst ? k_omega_sst::kBetaStar * e : e / std::max(k, Real(1e-12));
+    const Real rate_e = sst ? k_omega_sst::kBeta2 * e : k_epsilon::kC2 * rate;
+    const auto settle = [&](std::size_t component, Real decayed) {
+      Real& value = w_[component](c.i, c.j, c.k);
+      value += c.weight * (decayed - value);
+      u_[component](c.i, c.j, c.k) = w_[kRho](c.i, c.j, c.k) * value;
+    };
+    settle(kK, k / (1 + dt * rate));
+    settle(kE, e / (1 + dt * rate_e));
+    eddy_viscosity_(c.i, c.j, c.k) *= 1 - c.weight;
+  });
+}
+
+/// Cells of solids in the middle of the step: their velocity alone.
+void Compressible::hold_solids(SolidMask& solids) {
+  force_solids(grid_, solids, 0.0, {middle_[kU].view(), middle_[kV].view(), middle_[kW].view()});
+}
+
+/// Cells of solids at the end of a step: momentum, kinetic energy and heat.
+///
+/// Forces changed the velocity of a cell by d from u0, and the energy by their work at the velocity v of the
+/// solid, at which its faces move: the heat that was there is E - rho (u0^2/2 + d v), where the conserved
+/// values would give E - rho (u0 + d)^2/2. Without this, ghost cells, whose u0 is not v, heat up or freeze.
+void Compressible::move_solids(SolidMask& solids, WorkDone work_done) {
+  aim_at_solids(solids, {w_[kU].view(), w_[kV].view(), w_[kW].view()});
+  for_each_index(static_cast<int>(solids.cells.size()), [&](int n) {
+    const SolidCell& c = solids.cells[static_cast<std::size_t>(n)];
+    const Real rho = w_[kRho](c.i, c.j, c.k);
+    const double volume = grid_.volume(c.i, c.j, c.k);
+    Real heat = 0, kinetic = 0;  // J/m3, what they gain
+    for (std::size_t d = 0; d < 3; ++d) {
+      if (!grid_.active(int(d))) continue;
+      Real& velocity = w_[kU + d](c.i, c.j, c.k);
+      const Real target = solids.target[static_cast<std::size_t>(n)][d];
+      const Real from = work_done == WorkDone::by_solids
+                            ? start_[kU + d](c.i, c.j, c.k) / start_[kRho](c.i, c.j, c.k)
+                            : target;
+      const Real gained = velocity - from, change = c.weight * (target - velocity);
+      if (work_done == WorkDone::by_solids) heat += c.weight * rho * gained * (from - c.solid[d]);
+      heat += c.weight * rho * Real(0.5) * gained * gained;
+      kinetic += rho * change * (velocity + Real(0.5) * change);
+      velocity += change;
+      u_[kU + d](c.i, c.j, c.k) += rho * change;
+      solids.impulse[static_cast<std::size_t>(n)][d] += volume * double(rho * change);
+    }
+    w_[kP](c.i, c.j, c.k) += (gas_.gamma - 1) * heat;
+    u_[kP](c.i, c.j, c.k) += heat + kinetic;
+    solids.work[static_cast<std::size_t>(n)] += volume * double(heat + kinetic);
+  });
+}
+
 template <class P>
-void Compressible::step(double dt) {
+void Compressible::step(double dt, SolidMask& solids) {
   for_each_cell(grid_.range(), PredictorKernel<P>{view_block<const Real>(w_), view_block<Real>(middle_),
                                                   eddy_viscosity_.view().origin, f1_.view().origin,
                                                   diffusion_, axes(), Real(dt)});
+  hold_solids(solids);
   boundaries_.fill(middle_);
-  acoustic_.solve(boundaries_, middle_, dt);
+  acoustic_.solve(boundaries_, middle_, dt, solids, inside_solid_);
   for_each_cell(grid_.range(), PressureKernel<P>{view_block<Real>(middle_), next_[kP].view().origin,
                                                  acoustic_.change().view().origin, gas_, axes(), Real(dt)});
   std::swap(middle_[kP], next_[kP]);
+  hold_solids(solids);
   boundaries_.fill(middle_);
   acoustic_.let_waves_out(boundaries_, middle_);
   const auto q = [&](int d) { return acoustic_.velocity(d).view().origin; };
@@ -151,13 +214,26 @@ void Compressible::step(double dt) {
                                 view_block<const Real>(flux_[1]), view_block<const Real>(flux_[2]),
                                 eddy_viscosity_.view().origin, gas_, diffusion_, axes(), Real(dt), Real(0)});
   std::swap(w_, next_);
-  if (turbulent() && dt > explicit_dt_) smooth_increments<P>(dt);
+  move_solids(solids, WorkDone::by_solids);
+  if (turbulent() && dt > explicit_dt_) {
+    smooth_increments<P>(dt);
+    move_solids(solids, WorkDone::by_friction);
+  }
 }
 
-void Compressible::advance(double dt) {
-  advance_turbulence(dt);
+void Compressible::advance(double dt, SolidMask& solids) {
+  solids.begin_step();
+  for (const SolidCell& c : solids.cells) inside_solid_(c.i, c.j, c.k) = c.weight;
+  const double last = acoustic_.last_dt();
+  advance_turbulence(dt, {acoustic_.change().view().origin, last > 0.0 ? Real(1.0 / last) : Real(0)});
+  if (turbulent()) still_solids(solids, Real(dt));
   boundaries_.fill(w_);
-  with_physics([&](auto physics) { step<decltype(physics)>(dt); });
+  with_physics([&](auto physics) { step<decltype(physics)>(dt, solids); });
+  for (const SolidCell& c : solids.cells) inside_solid_(c.i, c.j, c.k) = 0;
+  for (std::size_t n = 0; n < solids.cells.size(); ++n) {
+    ledger().momentum_of_solids += Vec3(solids.impulse[n][0], solids.impulse[n][1], solids.impulse[n][2]);
+    ledger().work_of_solids += solids.work[n];
+  }
 }
 
 std::vector<Field*> Compressible::state() {

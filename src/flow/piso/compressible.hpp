@@ -23,19 +23,27 @@ class Compressible : public godunov::GasFlow {
   /// courant / max over cells of sum over axes of |u|/h, with the speed that the present pressure can add;
   /// laminar: and 2 nu/h^2
   double stable_dt(double courant) override;
-  void advance(double dt) override;
+  using GasFlow::advance;
+  void advance(double dt, SolidMask& solids) override;
   std::vector<Field*> state() override;
   std::vector<double*> state_numbers() override { return {&acoustic_.last_dt()}; }
   int iterations() const { return acoustic_.iterations(); }  ///< of the last step's pressure equation
 
  private:
   template <class P>
-  void step(double dt);
+  void step(double dt, SolidMask& solids);
+  void still_solids(const SolidMask& solids, Real dt);
+  void hold_solids(SolidMask& solids);
+  /// At which velocity forces worked on the cells of solids: on faces that move with the solid; between the
+  /// cells themselves, at that which they are given.
+  enum class WorkDone { by_solids, by_friction };
+  void move_solids(SolidMask& solids, WorkDone work_done);
   template <class P>
   void smooth_increments(double dt);
   Acoustic acoustic_;
   IncrementSmoother smoother_;
   godunov::Block start_, middle_;
+  Field inside_solid_;                             ///< forcing weight of every cell, zero in the fluid
   double largest_nu_ = 0.0, explicit_dt_ = 1e300;  ///< m2/s, s: of the last stable_dt()
 };
 

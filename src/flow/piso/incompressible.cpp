@@ -141,7 +141,23 @@ BoundaryFlow Incompressible::predict(double a, double b, double time, Real dt) {
 
 void Incompressible::force(SolidMask& solids, double weight) {
   ScopedTimer timer(times_.forcing);
-  force_solids(grid_, solids, weight, views(u_star_));
+  force_solids(grid_, solids, weight * setup_.density, views(u_star_));
+}
+
+/// Faces of solid cells: the plain mean of the two cells, since the pressure inside a solid must not move the
+/// faces of the fluid; between two cells inside it the rigid velocity itself, which is free of divergence.
+void Incompressible::meet_solids(const SolidMask& solids) {
+  using Cell = std::array<int, 3>;
+  for_each_face_of_solids(
+      grid_, solids,
+      [&](const SolidCell& c, int d, const Cell& below, const Cell& above, const Cell& beyond) {
+        const Field& u = u_star_[static_cast<std::size_t>(d)];
+        const Real weight = grid_.metrics(d).weight[above[static_cast<std::size_t>(d)]];
+        const Real mean =
+            weight * u(below[0], below[1], below[2]) + (Real(1) - weight) * u(above[0], above[1], above[2]);
+        const Real inside = c.weight * solid_(beyond[0], beyond[1], beyond[2]);
+        q_[static_cast<std::size_t>(d)](above[0], above[1], above[2]) = mean + inside * (c.solid[d] - mean);
+      });
 }
 
 void Incompressible::correct(const SolidMask& solids, Real dt) {
@@ -152,7 +168,7 @@ void Incompressible::correct(const SolidMask& solids, Real dt) {
       periodic = periodic || (grid_.active(f / 2) && boundaries_.kind(f) == BoundaryKind::periodic);
     if (periodic) boundaries_.fill_velocity(views(u_star_), views(q_));
     face_velocities(grid_, std::as_const(*this).views(u_star_), p_.view(), dt, views(q_));
-    face_velocities_at_solids(grid_, solids, solid_.view(), std::as_const(*this).views(u_star_), views(q_));
+    meet_solids(solids);
     boundaries_.fill_face_velocity(views(q_), views(u_star_), p_.view(), dt);
     divergence(grid_, std::as_const(*this).views(q_), dt, phi_.view());
   }
@@ -170,9 +186,8 @@ void Incompressible::correct(const SolidMask& solids, Real dt) {
 void Incompressible::advance(double time, double dt, SolidMask& solids) {
   const Real h = static_cast<Real>(dt);
   convection_ = -1.0;
-  solids.resize_scratch();
+  solids.begin_step();
   for (const SolidCell& c : solids.cells) solid_(c.i, c.j, c.k) = c.weight;
-  std::fill(solids.impulse.begin(), solids.impulse.end(), std::array<double, 3>{0, 0, 0});
   smoothing_ = turbulence_ && dt > explicit_dt_;
   if (smoothing_) smoother_.prepare(0.5 * dt * largest_viscosity_);
 
@@ -205,7 +220,7 @@ void Incompressible::advance(double time, double dt, SolidMask& solids) {
   for (const SolidCell& c : solids.cells) solid_(c.i, c.j, c.k) = 0;
   Vec3 impulse{0, 0, 0};
   for (const auto& i : solids.impulse) impulse += Vec3(i[0], i[1], i[2]);
-  ledger_.impulse_on_solids -= setup_.density * impulse;
+  ledger_.impulse_on_solids -= impulse;
 
   if (turbulence_) {
     ScopedTimer timer(times_.turbulence);

@@ -89,6 +89,7 @@ class Incompressible {
  private:
   BoundaryFlow predict(double a, double b, double time, Real dt);
   void force(SolidMask& solids, double weight);
+  void meet_solids(const SolidMask& solids);
   void correct(const SolidMask& solids, Real dt);
   void book_boundaries(const BoundaryFlow& through, double dt);
   void book_pressure(ConstFieldView p, double weight, double dt);
