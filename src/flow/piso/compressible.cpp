@@ -16,10 +16,11 @@ using namespace godunov;
 
 /// Inverse of the convective step of a cell, of its explicit diffusive step, and its viscosity (m2/s). The
 /// speed on an axis is the largest in the cell and its two neighbours. What the pressure adds within the
-/// step: dt (r + g dt) = 1 with r = sum |u|/h and g = sum |grad p|/(rho h).
+/// step: dt (r + g dt) = 1 with r = sum |u|/h and g = sum |grad p|/(rho h). Cells inside a solid do not
+/// count.
 struct RateKernel {
   BlockView<const Real> w;
-  const Real* eddy_viscosity;
+  const Real *eddy_viscosity, *inside_solid;
   Diffusion diffusion;
   std::array<AxisLengths, 3> axis;
   std::array<bool, 3> active;
@@ -46,9 +47,10 @@ struct RateKernel {
       squares += h * h;
     }
     const Real nu = diffusion.viscosity * inv_rho, nu_t = eddy_viscosity[o] * inv_rho;
-    values[0] = Real(0.5) * (r + std::sqrt(r * r + 4 * g * inv_rho));
-    values[1] = (diffusion.fastest * nu + diffusion.fastest_t * nu_t) * squares;
-    values[2] = Real(0.5) * (diffusion.fastest * nu + diffusion.fastest_t * nu_t);
+    const Real counts = inside_solid[o] > 0 ? Real(0) : Real(1);
+    values[0] = counts * Real(0.5) * (r + std::sqrt(r * r + 4 * g * inv_rho));
+    values[1] = counts * (diffusion.fastest * nu + diffusion.fastest_t * nu_t) * squares;
+    values[2] = counts * Real(0.5) * (diffusion.fastest * nu + diffusion.fastest_t * nu_t);
   }
 };
 
@@ -100,6 +102,7 @@ double Compressible::stable_dt(double courant) {
   const auto [flow, diffusive, nu] =
       reduce_max<3>(grid_.range(), RateKernel{view_block<const Real>(w_),
                                               eddy_viscosity_.view().origin,
+                                              inside_solid_.view().origin,
                                               diffusion_,
                                               axes(),
                                               {grid_.active(0), grid_.active(1), grid_.active(2)}});
@@ -223,13 +226,14 @@ void Compressible::step(double dt, SolidMask& solids) {
 
 void Compressible::advance(double dt, SolidMask& solids) {
   solids.begin_step();
+  if (had_solids_) inside_solid_.fill(0);
   for (const SolidCell& c : solids.cells) inside_solid_(c.i, c.j, c.k) = c.weight;
+  had_solids_ = !solids.cells.empty();
   const double last = acoustic_.last_dt();
   advance_turbulence(dt, {acoustic_.change().view().origin, last > 0.0 ? Real(1.0 / last) : Real(0)});
   if (turbulent()) still_solids(solids, Real(dt));
   boundaries_.fill(w_);
   with_physics([&](auto physics) { step<decltype(physics)>(dt, solids); });
-  for (const SolidCell& c : solids.cells) inside_solid_(c.i, c.j, c.k) = 0;
   for (std::size_t n = 0; n < solids.cells.size(); ++n) {
     ledger().momentum_of_solids += Vec3(solids.impulse[n][0], solids.impulse[n][1], solids.impulse[n][2]);
     ledger().work_of_solids += solids.work[n];
@@ -239,6 +243,7 @@ void Compressible::advance(double dt, SolidMask& solids) {
 std::vector<Field*> Compressible::state() {
   std::vector<Field*> fields = GasFlow::state();
   fields.push_back(&acoustic_.change());
+  fields.push_back(&inside_solid_);
   return fields;
 }
 
