@@ -43,7 +43,8 @@ class Compressible : public godunov::GasFlow {
   Acoustic acoustic_;
   IncrementSmoother smoother_;
   godunov::Block start_, middle_;
-  Field inside_solid_;                             ///< forcing weight of every cell, zero in the fluid
+  Field inside_solid_;  ///< forcing weight of every cell in the last step, zero in the fluid
+  bool had_solids_ = true;
   double largest_nu_ = 0.0, explicit_dt_ = 1e300;  ///< m2/s, s: of the last stable_dt()
 };
 
