@@ -116,7 +116,8 @@ void CoupledModel::build_step() {
            if (air_) coupling_->map(particles_.bodies(), mask_);
          }});
   if (flow_)
-    step_.push_back({"flow.advance", "PISO: predictor, forced and projected twice (see flow.* below)",
+    step_.push_back({"flow.advance",
+                     "one step of the fluid, driven to the velocity of bodies inside them (see flow.* below)",
                      [this](double time, double dt) {
                        if (!air_) return;
                        flow_->advance(time, dt, mask_);

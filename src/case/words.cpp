@@ -6,7 +6,7 @@ const std::vector<Word>& words(FlowSolver) {
   static const std::vector<Word> list{
       {"none", "no fluid: bodies move under gravity and contacts alone"},
       {"incompressible", "PISO (Issa 1986): liquids, and gases below about Mach 0.3"},
-      {"compressible", "Godunov, density based: shocks, the under-expanded jet near its nozzle"},
+      {"compressible", "Godunov, density based: shocks, the under-expanded jet near its nozzle; no bodies"},
       {"compressible-piso",
        "pressure based, any Mach number below about 0.8: steps limited by the flow, not by sound"}};
   return list;
