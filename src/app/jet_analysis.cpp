@@ -1,5 +1,6 @@
 #include "app/jet_analysis.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace ejecta {
@@ -43,6 +44,18 @@ double vertex(const std::vector<double>& x, const std::vector<JetSample>& s, std
   return at_left + left / (left - right) * (at_right - at_left);
 }
 
+/// Place of a shock that the grid spreads over the cells about n, n + 1: mean of the places where the
+/// pressure rises, weighed with the rises.
+double smeared_shock(const Centreline& line, std::size_t n) {
+  double rises = 0.0, moment = 0.0;
+  for (std::size_t m = n > 0 ? n - 1 : n; m <= n + 1 && m + 1 < line.z.size(); ++m) {
+    const double rise = std::max(0.0, line.samples[m + 1].pressure - line.samples[m].pressure);
+    rises += rise;
+    moment += rise * 0.5 * (line.z[m] + line.z[m + 1]);
+  }
+  return rises > 0.0 ? moment / rises : 0.5 * (line.z[n] + line.z[n + 1]);
+}
+
 }  // namespace
 
 Centreline centreline(const JetModel& jet) {
@@ -59,7 +72,7 @@ Centreline centreline(const JetModel& jet) {
   return line;
 }
 
-ShockStructure shock_structure(const Centreline& line) {
+ShockStructure shock_structure(const Centreline& line, const Gas& gas) {
   ShockStructure found;
   const auto& s = line.samples;
   std::size_t peak = 0;
@@ -67,12 +80,15 @@ ShockStructure shock_structure(const Centreline& line) {
     if (s[n].mach > s[peak].mach) peak = n;
     // The disk: the flow has been well above Mach 1 and falls below it within a few cells.
     if (s[peak].mach > 1.5 && s[n].mach >= 1.0 && s[n + 1].mach < 1.0) {
-      // Its place is where the Mach number falls fastest between the peak and here.
+      // Its place is about where the Mach number falls fastest between the peak and here.
       std::size_t steepest = peak;
       for (std::size_t m = peak; m <= n; ++m)
         if (s[m].mach - s[m + 1].mach > s[steepest].mach - s[steepest + 1].mach) steepest = m;
-      found.mach_disk = 0.5 * (line.z[steepest] + line.z[steepest + 1]);
+      found.mach_disk = smeared_shock(line, steepest);
       found.peak_mach = s[peak].mach;
+      const std::size_t behind = std::min(steepest + 2, s.size() - 1);
+      found.behind_over_normal_shock =
+          s[behind].pressure / (s[peak].pressure * gas_normal_shock_ratio(gas, s[peak].mach));
     }
   }
   for (std::size_t n = 1; n + 1 < s.size() && found.pressure_maxima.size() < 8; ++n) {

@@ -3,6 +3,7 @@
 
 #include "app/jet_model.hpp"
 #include "app/round_jet.hpp"
+#include "flow/gas.hpp"
 
 namespace ejecta {
 
@@ -21,10 +22,13 @@ Centreline centreline(const JetModel& jet);
 struct ShockStructure {
   double mach_disk = 0.0;  ///< m: where the first supersonic stretch ends
   double peak_mach = 0.0;
+  /// Pressure behind the shock at `mach_disk` over that behind a normal shock at `peak_mach`: 1 where there
+  /// is a disk, twice as much where oblique shocks cross on the axis instead.
+  double behind_over_normal_shock = 0.0;
   double first_cell = 0.0;              ///< m: first pressure maximum behind the first expansion
   std::vector<double> pressure_maxima;  ///< m
 };
-ShockStructure shock_structure(const Centreline& line);
+ShockStructure shock_structure(const Centreline& line, const Gas& gas);
 
 /// Fitted over [from, to], m; U_0 is the momentum-equivalent velocity. Zeros where fewer than three heights
 /// lie in between.

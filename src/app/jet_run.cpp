@@ -144,7 +144,7 @@ void JetRun::show() {
   const double d = jet_.orifice_diameter(), pa = jet_.ambient_pressure();
   const double p0 = jet_.valve().total_pressure(jet_.time(), pa);
   const Gas gas{c.fluid.gamma, c.fluid.gas_constant};
-  const ShockStructure shocks = shock_structure(line_);
+  const ShockStructure shocks = shock_structure(line_, gas);
   const double u = nozzle_equivalent_velocity(jet_.ideal_exit(), c.valve.discharge_coefficient,
                                               gas_density(gas, pa, c.environment.temperature));
   const double from = c.jet.far_field_from > 0.0 ? c.jet.far_field_from : kFarFrom * d;
@@ -154,6 +154,7 @@ void JetRun::show() {
   at_full_["shocks"] = {{"mach_disk_m", shocks.mach_disk},
                         {"mach_disk_ashkenas_sherman_m", nozzle_mach_disk(p0, pa, d)},
                         {"peak_mach", shocks.peak_mach},
+                        {"behind_over_normal_shock", shocks.behind_over_normal_shock},
                         {"first_cell_m", shocks.first_cell},
                         {"first_cell_prandtl_pack_m", nozzle_shock_cell(gas, p0, pa, d)},
                         {"pressure_maxima_m", shocks.pressure_maxima}};

@@ -99,7 +99,9 @@ int sweep_jet(const Case& original, const RunOptions& options) {
     gauges.push_back(supply - c.environment.pressure);
     ordered_json e = entry(jet);
     e["supply_gauge_Pa"] = gauges.back();
-    e["mach_disk_m"] = shock_structure(jet.line).mach_disk;
+    const ShockStructure shocks = shock_structure(jet.line, Gas{c.fluid.gamma, c.fluid.gas_constant});
+    e["mach_disk_m"] = shocks.mach_disk;
+    e["behind_over_normal_shock"] = shocks.behind_over_normal_shock;
     e["equivalent_velocity_formula_m_s"] = jet.equivalent_velocity;
     if (!slow.empty()) {
       e["equivalent_velocity_momentum_m_s"] =

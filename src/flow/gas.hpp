@@ -53,4 +53,9 @@ inline double gas_pitot_ratio(const Gas& gas, double mach) {
          std::pow((g + 1.0) / (2.0 * g * m2 - (g - 1.0)), 1.0 / (g - 1.0));
 }
 
+/// p2/p1 across a normal shock
+inline double gas_normal_shock_ratio(const Gas& gas, double mach) {
+  return 1.0 + 2.0 * gas.gamma / (gas.gamma + 1.0) * (mach * mach - 1.0);
+}
+
 }  // namespace ejecta

@@ -4,6 +4,7 @@
 #include <fstream>
 
 #include "app/computed_jet.hpp"
+#include "app/jet_analysis.hpp"
 #include "app/jet_measured.hpp"
 #include "app/jet_model.hpp"
 #include "app/jet_settled.hpp"
@@ -226,6 +227,33 @@ TEST_F(Measured, BadRowsAreRefusedWithTheirLine) {
   EXPECT_THAT(refusal("z [mm],p [kPa]\n1,2\n3\n"), HasSubstr("measured.csv:3: a value is missing"));
   EXPECT_THAT(refusal("z [mm],p [kPa]\n3,2\n1,2\n"), HasSubstr("do not increase"));
   EXPECT_THAT(refusal("z [mm],p [kPa]\n"), HasSubstr("no measured values"));
+}
+
+/// A jet on its axis that gets faster up to `place`, where it meets a shock with `jump` times the pressure
+/// rise of a normal one, spread over the cell in which it stands and the next as conservation asks.
+Centreline shocked(double place, double jump) {
+  const double width = 0.1;
+  Centreline line;
+  for (int n = 0; n < 100; ++n) {
+    const double z = width * (n + 0.5), mach = 1.0 + std::min(z, place);
+    const double ahead = 10.0, behind = ahead * jump * gas_normal_shock_ratio(Gas{}, 1.0 + place);
+    const double share = std::clamp((z + 0.5 * width - place) / width, 0.0, 1.0);
+    JetSample s;
+    s.mach = share > 0.0 ? 0.5 : mach;
+    s.pressure = ahead + share * (behind - ahead);
+    line.z.push_back(z);
+    line.samples.push_back(s);
+  }
+  return line;
+}
+
+TEST(ShockStructure, FindsASmearedShockWithinItsCell) {
+  for (const double place : {2.3, 2.33, 2.37, 2.4}) {
+    const ShockStructure found = shock_structure(shocked(place, 1.0), Gas{});
+    EXPECT_NEAR(found.mach_disk, place, 1e-9);
+    EXPECT_NEAR(found.behind_over_normal_shock, 1.0, 0.1);
+  }
+  EXPECT_NEAR(shock_structure(shocked(2.3, 2.0), Gas{}).behind_over_normal_shock, 2.0, 0.1);
 }
 
 }  // namespace

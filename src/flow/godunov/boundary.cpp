@@ -203,6 +203,15 @@ bool Boundaries::is_wall(int face) const {
   return type == BoundaryType::wall || type == BoundaryType::moving_wall;
 }
 
+bool Boundaries::holds_gas_back(int face) const {
+  const std::vector<std::uint8_t>& cells = face_[static_cast<std::size_t>(face)].handle;
+  return std::any_of(cells.begin(), cells.end(), [&](std::uint8_t handle) {
+    const BoundaryType type = conditions_[handle].type;
+    return type == BoundaryType::wall || type == BoundaryType::moving_wall || type == BoundaryType::slip ||
+           type == BoundaryType::symmetry || type == BoundaryType::total_pressure;
+  });
+}
+
 bool Boundaries::is_periodic(int axis) const {
   return conditions_[face_[static_cast<std::size_t>(2 * axis)].base].type == BoundaryType::periodic &&
          grid_.n(axis) >= kGhosts;

@@ -90,6 +90,9 @@ class GasFlow {
       across ? visit(Physics<true, false, true>{}) : visit(Physics<true, false, false>{});
     else across ? visit(Physics<false, false, true>{}) : visit(Physics<false, false, false>{});
   }
+  /// As below, of the faces in a range across axis D alone.
+  template <int D, class P, class Convection>
+  void sweep(const Range3& faces, const Block& primitive, const Convection& convection);
   /// flux_ = what `convection` and diffusion carry through every face, from primitive variables with ghosts.
   template <class P, class Convection>
   void fluxes(const Block& primitive, const Convection& convection);
@@ -120,18 +123,18 @@ class GasFlow {
   SolidMask no_solids_;
 };
 
+template <int D, class P, class Convection>
+void GasFlow::sweep(const Range3& faces, const Block& primitive, const Convection& convection) {
+  for_each_cell(faces, FluxKernel<D, P, Convection>{view_block<const Real>(primitive),
+                                                    view_block<Real>(flux_[D]), eddy_viscosity_.view().origin,
+                                                    f1_.view().origin, gas_, diffusion_, axes(), convection});
+}
+
 template <class P, class Convection>
 void GasFlow::fluxes(const Block& primitive, const Convection& convection) {
-  const auto w = view_block<const Real>(primitive);
-  const Real *mut = eddy_viscosity_.view().origin, *f1 = f1_.view().origin;
-  const auto sweep = [&](auto axis) {
-    constexpr int d = decltype(axis)::value;
-    for_each_cell(faces_along(grid_, d), FluxKernel<d, P, Convection>{w, view_block<Real>(flux_[d]), mut, f1,
-                                                                      gas_, diffusion_, axes(), convection});
-  };
-  if (grid_.active(0)) sweep(std::integral_constant<int, 0>{});
-  if constexpr (P::across) sweep(std::integral_constant<int, 1>{});
-  if (grid_.active(2)) sweep(std::integral_constant<int, 2>{});
+  if (grid_.active(0)) sweep<0, P>(faces_along(grid_, 0), primitive, convection);
+  if constexpr (P::across) sweep<1, P>(faces_along(grid_, 1), primitive, convection);
+  if (grid_.active(2)) sweep<2, P>(faces_along(grid_, 2), primitive, convection);
 }
 
 }  // namespace ejecta::godunov

@@ -4,7 +4,7 @@
 #include <span>
 
 #include "base/parallel.hpp"
-#include "flow/godunov/flux_hllc.hpp"
+#include "flow/godunov/flux_wall.hpp"
 #include "flow/godunov/update_kernel.hpp"
 
 namespace ejecta::godunov {
@@ -45,11 +45,28 @@ double Solver::stable_dt(double courant) {
 }
 
 template <class P>
+void Solver::wall_fluxes() {
+  for (int face = 0; face < 6; ++face) {
+    const int d = face / 2, at = face % 2 ? grid_.n(d) : 0;
+    const bool on_axis = grid_.axisymmetric() && face == 0 && grid_.lower().x() == 0.0;  // no area
+    if (!grid_.active(d) || on_axis || !boundaries_.holds_gas_back(face)) continue;
+    Range3 faces = grid_.range();
+    (d == 0 ? faces.i0 : d == 1 ? faces.j0 : faces.k0) = at;
+    (d == 0 ? faces.i1 : d == 1 ? faces.j1 : faces.k1) = at + 1;
+    if (d == 0) sweep<0, P>(faces, w_, WallConvection{});
+    if constexpr (P::across)
+      if (d == 1) sweep<1, P>(faces, w_, WallConvection{});
+    if (d == 2) sweep<2, P>(faces, w_, WallConvection{});
+  }
+}
+
+template <class P>
 void Solver::run_stages(double dt) {
   std::swap(u_, start_);
   const auto run = [&](const Stage& stage, const Block& previous) {
     boundaries_.fill(w_);
     fluxes<P>(w_, HllcConvection{});
+    wall_fluxes<P>();
     if (options_.keep_ledger) add_to_ledger(stage.share * dt);
     for_each_cell(grid_.range(),
                   UpdateKernel<P>{view_block<Real>(u_), view_block<Real>(next_), view_block<const Real>(w_),

@@ -17,6 +17,9 @@ class Solver : public GasFlow {
  private:
   template <class P>
   void run_stages(double dt);
+  /// Anew through the faces of the box where walls are (WallConvection).
+  template <class P>
+  void wall_fluxes();
   Block start_;
 };
 
