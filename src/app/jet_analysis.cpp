@@ -6,6 +6,7 @@
 namespace ejecta {
 namespace {
 
+constexpr std::size_t kCellsBehind = 4;      ///< within which a captured shock has reached its pressure
 constexpr double kLeastAxialVelocity = 1.0;  ///< m/s: below it there is no jet whose width could be told
 
 double half_radius(const JetModel& jet, double z, double on_axis) {
@@ -86,9 +87,11 @@ ShockStructure shock_structure(const Centreline& line, const Gas& gas) {
         if (s[m].mach - s[m + 1].mach > s[steepest].mach - s[steepest + 1].mach) steepest = m;
       found.mach_disk = smeared_shock(line, steepest);
       found.peak_mach = s[peak].mach;
-      const std::size_t behind = std::min(steepest + 2, s.size() - 1);
+      double behind = 0.0;
+      for (std::size_t m = steepest + 1; m < s.size() && m <= steepest + kCellsBehind; ++m)
+        behind = std::max(behind, s[m].pressure);
       found.behind_over_normal_shock =
-          s[behind].pressure / (s[peak].pressure * gas_normal_shock_ratio(gas, s[peak].mach));
+          behind / (s[peak].pressure * gas_normal_shock_ratio(gas, s[peak].mach));
     }
   }
   for (std::size_t n = 1; n + 1 < s.size() && found.pressure_maxima.size() < 8; ++n) {

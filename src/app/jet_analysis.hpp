@@ -22,8 +22,8 @@ Centreline centreline(const JetModel& jet);
 struct ShockStructure {
   double mach_disk = 0.0;  ///< m: where the first supersonic stretch ends
   double peak_mach = 0.0;
-  /// Pressure behind the shock at `mach_disk` over that behind a normal shock at `peak_mach`: 1 where there
-  /// is a disk, twice as much where oblique shocks cross on the axis instead.
+  /// Highest pressure just behind the shock at `mach_disk` over that behind a normal shock at `peak_mach`: 1
+  /// where there is a disk, twice as much where oblique shocks cross on the axis instead.
   double behind_over_normal_shock = 0.0;
   double first_cell = 0.0;              ///< m: first pressure maximum behind the first expansion
   std::vector<double> pressure_maxima;  ///< m
