@@ -134,22 +134,22 @@ void Compressible::smooth_increments(double dt) {
   for_each_cell(grid_.range(), PrimitiveKernel<P>{view_block<const Real>(u_), view_block<Real>(w_), gas_});
 }
 
-/// Inside a solid turbulence only decays, and there is no eddy viscosity; `next_` holds what was there before
-/// the sources.
+/// Inside a solid turbulence only decays, its time scale kept, and there is no eddy viscosity; `next_` holds
+/// what was there before the sources. Were epsilon to decay ahead of k, gas that a solid sets free would grow
+/// k at the rate of the strain for as long as epsilon needs to come back from nothing.
 void Compressible::still_solids(const SolidMask& solids, Real dt) {
   const bool sst = options_.turbulence == TurbulenceModel::k_omega_sst;
   for_each_index(static_cast<int>(solids.cells.size()), [&](int n) {
     const SolidCell& c = solids.cells[static_cast<std::size_t>(n)];
     const Real k = next_[kK](c.i, c.j, c.k), e = next_[kE](c.i, c.j, c.k);
     const Real rate = sst ? k_omega_sst::kBetaStar * e : e / std::max(k, Real(1e-12));
-    const Real rate_e = sst ? k_omega_sst::kBeta2 * e : k_epsilon::kC2 * rate;
     const auto settle = [&](std::size_t component, Real decayed) {
       Real& value = w_[component](c.i, c.j, c.k);
       value += c.weight * (decayed - value);
       u_[component](c.i, c.j, c.k) = w_[kRho](c.i, c.j, c.k) * value;
     };
     settle(kK, k / (1 + dt * rate));
-    settle(kE, e / (1 + dt * rate_e));
+    settle(kE, sst ? e : e / (1 + dt * rate));
     eddy_viscosity_(c.i, c.j, c.k) *= 1 - c.weight;
   });
   // In the fluid beside it eddies are no larger than the distance to the wall lets them be: epsilon >=
