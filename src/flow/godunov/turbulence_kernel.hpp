@@ -57,18 +57,21 @@ EJECTA_KERNEL Production production(const TurbulencePoint& p, Real nu_t) {
 EJECTA_KERNEL Real positive(Real a) { return a > 0 ? a : Real(0); }
 
 /// Sources of k-epsilon over dt, sinks implicit so that both stay positive.
+/// `bounded`: the time scale of the equation of epsilon is bounded like that of the eddy viscosity (Durbin
+/// 1996), without which k grows for as long as gas stays in the shear beside a body.
 EJECTA_KERNEL TurbulencePair advance_k_epsilon(const TurbulencePoint& p, Real dt, bool round_jet,
-                                               bool compressible) {
+                                               bool compressible, bool bounded) {
   using namespace k_epsilon;
   const Real time = realizable_time(p.k, p.e, p.strain2);
   const Production made = production(p, kCmu * p.k * time);
   const Real rate = p.e / p.k, loss = compressible ? dilatation_dissipation(p.k, p.sound_squared) : Real(1);
   const Real gain = made.strain + positive(made.dilatation) * p.k, lost = positive(-made.dilatation);
+  const Real own = bounded ? 1 / time : rate;
   Real pope = 0;
   if (round_jet) pope = kC3 * time * time * time * vortex_stretching(p.gradient);
   return {(p.k + dt * gain) / (1 + dt * (rate * loss + lost)),
-          (p.e + dt * rate * (kC1 * gain + positive(pope) * p.e)) /
-              (1 + dt * (rate * (kC2 + positive(-pope)) + kC1 * lost))};
+          (p.e + dt * own * (kC1 * gain + positive(pope) * p.e)) /
+              (1 + dt * (own * (kC2 + positive(-pope)) + kC1 * lost))};
 }
 
 /// Sources of k-omega SST over dt; `cross` is (1 - F1) times the cross-diffusion, 1/s2.
@@ -158,7 +161,7 @@ struct TurbulenceKernel {
       mut = rho *
             k_omega_sst::eddy_viscosity(after.k, after.e, std::sqrt(p.strain2), f2(after.k, after.e, nu, d));
     } else {
-      after = advance_k_epsilon(p, dt, RoundJet, compressible);
+      after = advance_k_epsilon(p, dt, RoundJet, compressible, dilatation.pressure_change != nullptr);
       mut = rho * k_epsilon::kCmu * after.k * realizable_time(after.k, after.e, p.strain2);
     }
     const Real most = kMostViscosityRatio * viscosity;

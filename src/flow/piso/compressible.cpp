@@ -152,25 +152,6 @@ void Compressible::still_solids(const SolidMask& solids, Real dt) {
     settle(kE, sst ? e : e / (1 + dt * rate));
     eddy_viscosity_(c.i, c.j, c.k) *= 1 - c.weight;
   });
-  // In the fluid beside it eddies are no larger than the distance to the wall lets them be: epsilon >=
-  // C_mu^3/4 k^3/2/(0.41 y) (Launder & Spalding 1974). Else k grows for as long as gas stays in the shear
-  // there.
-  const auto largest_eddies = [&](const SolidCell&, int d, const auto&, const auto&, const auto& beyond) {
-    const auto [i, j, k] = beyond;
-    if (inside_solid_(i, j, k) > 0) return;
-    const Real y = Real(0.5) * grid_.metrics(d).width[beyond[static_cast<std::size_t>(d)]];
-    constexpr Real cmu_quarter = Real(0.5477226);
-    const Real omega =
-        std::sqrt(std::max(w_[kK](i, j, k), Real(0))) / (cmu_quarter * k_omega_sst::kKappa * y);
-    const Real least = sst ? omega : k_epsilon::kCmu * w_[kK](i, j, k) * omega;
-    Real& e = w_[kE](i, j, k);
-    if (e >= least) return;
-    e = least;
-    u_[kE](i, j, k) = w_[kRho](i, j, k) * least;
-    eddy_viscosity_(i, j, k) =
-        std::min(eddy_viscosity_(i, j, k), w_[kRho](i, j, k) * w_[kK](i, j, k) / omega);
-  };
-  for (const SolidCell& c : solids.cells) for_each_face_of(c, grid_, largest_eddies);  // may share a cell
 }
 
 /// Cells of solids in the middle of the step: their velocity alone.
