@@ -11,7 +11,7 @@ class Clock {
   double time() const { return time_; }
   std::int64_t step() const { return step_; }
 
-  /// A single event. Times in the past are ignored.
+  /// A single event. Times in the past are ignored; events that differ by rounding alone are one.
   void add_event(double time);
   /// Events at start, start + interval, ... up to `end`.
   void add_events_every(double interval, double start, double end);
@@ -25,6 +25,7 @@ class Clock {
   void restore(double time, std::int64_t step);
 
  private:
+  void sort_events();
   double next_event() const;
   double time_ = 0.0;
   std::int64_t step_ = 0;
