@@ -18,11 +18,11 @@ std::unique_ptr<JetSource> jet_of(Case c) {
   return make_jet_source(c);
 }
 
-/// Highest speed on the jet's axis at height z until then, m/s.
-double peak_speed(const JetSource& jet, double until, double z) {
+/// Highest speed on the jet's axis at a height above the orifice until then, m/s.
+double peak_speed(const JetSource& jet, double until, double height) {
   constexpr int samples = 256;
   double fastest = 0.0;
-  for (int n = 0; n <= samples; ++n) fastest = std::max(fastest, jet.fastest(until * n / samples, z));
+  for (int n = 0; n <= samples; ++n) fastest = std::max(fastest, jet.fastest(until * n / samples, height));
   return fastest;
 }
 
@@ -56,18 +56,16 @@ double dying_speed(double from_nozzle, double since_closed) { return from_nozzle
 double dying_time(const Case& original) {
   Case c = original;
   c.jet.kind = JetKind::self_similar;
-  const std::vector<double>& z = c.grid.axis[2].points;
-  const double low = z.front() - c.jet.nozzle.z(), high = z.back() - c.jet.nozzle.z();
-  const double k = high * peak_speed(*jet_of(c), c.run.end_time, z.back());
+  const std::vector<double>& x = c.grid.axis[static_cast<std::size_t>(*jet_face(c) / 2)].points;
+  const double low = jet_height(c), high = low + x.back() - x.front();
+  const double k = high * peak_speed(*jet_of(c), c.run.end_time, high);
   const double moment = (std::pow(high, 5) - std::pow(std::max(low, 0.0), 5)) / 5.0;
   return std::sqrt(moment / (4.0 * kDeadAir * k * k * (high - low)));
 }
 
 }  // namespace
 
-double jet_speed(const Case& c) {
-  return peak_speed(*jet_of(c), c.run.end_time, c.grid.axis[2].points.front());
-}
+double jet_speed(const Case& c) { return peak_speed(*jet_of(c), c.run.end_time, jet_height(c)); }
 
 double air_until(const Case& c) {
   if (c.flow.solver == FlowSolver::none || !has_jet(c) || c.run.until != RunUntil::verdict)
@@ -80,22 +78,26 @@ double air_until(const Case& c) {
 
 std::int64_t jet_steps(const Case& c, const Grid& grid, double until) {
   const std::unique_ptr<JetSource> jet = jet_of(c);
-  const double closed = jet->dead_from(), nozzle = c.jet.nozzle.z();
-  const Axis& z = grid.axis(2);
+  const double closed = jet->dead_from();
+  const int face = *jet_face(c);
+  const Axis& x = grid.axis(face / 2);
+  std::vector<double> height;  // of the cells along the way, above the orifice
+  for (const double centre : x.centre)
+    height.push_back(jet_height(c) + std::abs(centre - (face % 2 ? x.face.back() : x.face.front())));
   double longest = std::min(c.run.time_step_max, kStepOfPulse * c.valve.duration);
   for (const double interval : {c.output.fields_interval, c.output.slices_interval})
     if (interval > 0.0) longest = std::min(longest, interval);
   std::vector<double> peak;
-  for (const double height : z.centre) peak.push_back(peak_speed(*jet, closed, height));
+  for (const double h : height) peak.push_back(peak_speed(*jet, closed, h));
   constexpr int samples = 400;
   double steps = 0.0;
   for (int n = 0; n < samples; ++n) {
     const double t = until * (n + 0.5) / samples;
     double rate = 1.0 / longest;
-    for (std::size_t k = 0; k < z.width.size(); ++k) {
-      const double speed = t < closed ? jet->fastest(t, z.centre[k])
-                                      : std::min(peak[k], dying_speed(z.centre[k] - nozzle, t - closed));
-      rate = std::max(rate, speed / (c.run.courant * z.width[k]));
+    for (std::size_t k = 0; k < height.size(); ++k) {
+      const double speed =
+          t < closed ? jet->fastest(t, height[k]) : std::min(peak[k], dying_speed(height[k], t - closed));
+      rate = std::max(rate, speed / (c.run.courant * x.width[k]));
     }
     steps += rate * until / samples;
   }

@@ -7,7 +7,7 @@
 #include "app/air_limits.hpp"
 #include "app/grid_sampler.hpp"
 #include "app/jet_drive.hpp"
-#include "app/jet_source.hpp"
+#include "app/jet_inlet.hpp"
 #include "base/error.hpp"
 #include "base/state_reader.hpp"
 #include "base/stopwatch.hpp"
@@ -25,10 +25,8 @@ class CompressibleModel : public FlowModel {
     solver_ = solver_from_case(c, grid, inlets_);
     solver_->keep_ledger();
     if (!inlets_.empty()) drive_ = std::make_unique<JetDrive>(c);
-    if (c.boundary[kJetFace].type == BoundaryType::jet) {
-      jet_ = make_jet_source(c);
-      let_in(0.0);
-    }
+    else jet_ = make_jet_inlet(c);
+    if (jet_) let_in(0.0);
     momentum_at_start_ = momentum();
     mass_at_start_ = solver_->total(kRho);
     energy_at_start_ = solver_->total(kP);
@@ -39,9 +37,9 @@ class CompressibleModel : public FlowModel {
     if (!jet_) return dt;
     // A jet that starts must not outrun the step that lets it in, nor open and close unseen within one.
     dt = std::min(dt, kStepOfPulse * case_.valve.duration);
-    const double h = grid_.axis(2).width.front(), z = grid_.axis(2).face.front();
+    const double h = width_inside(grid_, jet_->face());
     return std::min(dt,
-                    std::max(0.5 * dt, case_.run.courant * h / std::max(jet_->fastest(time + dt, z), 1e-30)));
+                    std::max(0.5 * dt, case_.run.courant * h / std::max(jet_->fastest(time + dt), 1e-30)));
   }
   double courant(double dt) const override { return dt / solver_->stable_dt(1.0); }
   void advance(double time, double dt, SolidMask& solids) override {
@@ -143,7 +141,7 @@ class CompressibleModel : public FlowModel {
              seconds_, calls_}};
   }
   std::vector<double> events() const override {
-    if (jet_) return jet_->events();
+    if (jet_) return jet_->source().events();
     return drive_ ? drive_->valve().events() : std::vector<double>{};
   }
   std::vector<Field*> state_fields() override { return solver_->state(); }
@@ -183,8 +181,6 @@ class CompressibleModel : public FlowModel {
   }
 
  private:
-  static constexpr int kJetFace = 4;  ///< z_min
-
   /// What the jet brings to each cell of its face. The jet's velocity is that of air of the ambient density
   /// with the same momentum; here rho w^2 is kept, and the total temperature is that of the ambient, of which
   /// a jet some tens of orifices away consists (Crocco: it is even where the reservoir has it too): w^2 = M R
@@ -193,13 +189,10 @@ class CompressibleModel : public FlowModel {
     const Gas& gas = solver_->options().gas;
     const double r = gas.gas_constant, cp = gas.specific_heat_pressure();
     const double pressure = case_.environment.pressure, total = case_.environment.temperature;
-    const Axis &x = grid_.axis(0), &y = grid_.axis(1);
     const double ambient = pressure / (r * total);
     const auto state = [&](const Vec3& at) {
-      const auto i = static_cast<std::size_t>(x.cell_at(at.x())),
-                 j = static_cast<std::size_t>(y.cell_at(at.y()));
-      const JetState jet = jet_->at(grid_.axisymmetric() ? Vec3(at.x(), 0.0, at.z()) : at, 0.5 * x.width[i],
-                                    0.5 * y.width[j], time);
+      const Vec3 on_plane = grid_.axisymmetric() ? Vec3(at.x(), case_.jet.nozzle.y(), at.z()) : at;
+      const JetState jet = jet_->at(on_plane, half_widths(grid_, at), time);
       const double momentum = ambient * jet.velocity.squaredNorm();
       const double square = momentum * r * total / (pressure + 0.5 * momentum * r / cp);
       GasState s;
@@ -213,7 +206,7 @@ class CompressibleModel : public FlowModel {
       s.e = case_.flow.turbulence == TurbulenceModel::k_omega_sst ? omega_of(s.k, epsilon) : epsilon;
       return s;
     };
-    solver_->boundaries().set_states(kJetFace, std::cref(state));  // a reference: nothing is allocated
+    solver_->boundaries().set_states(jet_->face(), std::cref(state));  // a reference: nothing is allocated
   }
   double still_epsilon(const GasState& s) const {
     return case_.flow.turbulence == TurbulenceModel::k_omega_sst ? epsilon_of(s.k, s.e) : s.e;
@@ -254,7 +247,7 @@ class CompressibleModel : public FlowModel {
   std::vector<DrivenInlet> inlets_;
   std::unique_ptr<GasFlow> solver_;
   std::unique_ptr<JetDrive> drive_;
-  std::unique_ptr<JetSource> jet_;
+  std::unique_ptr<JetInlet> jet_;
   Vec3 momentum_at_start_{0, 0, 0};
   double mass_at_start_ = 0.0, energy_at_start_ = 0.0, seconds_ = 0.0, time_ = 0.0;
   double fastest_ = 0.0;  ///< m/s, anywhere at any time

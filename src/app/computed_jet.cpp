@@ -2,11 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
+#include <cmath>
 #include <iostream>
 
 #include "app/jet_store.hpp"
 #include "base/error.hpp"
+#include "case/extent.hpp"
 #include "case/load.hpp"
 #include "flow/gas.hpp"
 #include "sorter/nozzle.hpp"
@@ -28,15 +29,22 @@ ValveSpec from_zero(ValveSpec v) {
 class ComputedJet : public JetSource {
  public:
   ComputedJet(const Case& box, Case source)
-      : nozzle_(box.jet.nozzle),
-        starts_(box.valve.opens_at),
+      : starts_(box.valve.opens_at),
         source_(std::move(source)),
         valve_(source_.valve, folder_of(source_)),
-        profile_(stored_or_computed_jet(source_, computed_jet_height(box),
+        profile_(stored_or_computed_jet(source_, jet_height(box),
                                         [](const std::string& line) { std::cerr << line << '\n'; })) {}
 
+  /// Where a face lies aslant its points are at other heights than the stored plane: near it the jet is a
+  /// cone with its tip in the orifice, in which r ~ z, u ~ 1/z, k ~ u^2 and epsilon ~ u^3/z.
   JetState at(const Vec3& x, double, double, double time) const override {
-    return profile_.at(x - nozzle_, time - starts_);
+    if (x.z() <= 0.0) return {};
+    const double closer = profile_.height() / x.z();
+    JetState s = profile_.at(closer * x, time - starts_);
+    s.velocity *= closer;
+    s.k *= closer * closer;
+    s.epsilon *= std::pow(closer, 4);
+    return s;
   }
   double fastest(double time, double) const override { return profile_.fastest(time - starts_); }
   std::vector<double> events() const override {
@@ -55,7 +63,6 @@ class ComputedJet : public JetSource {
   }
 
  private:
-  Vec3 nozzle_;
   double starts_;  ///< s, command of the box's valve
   Case source_;
   Valve valve_;
@@ -77,8 +84,6 @@ Case computed_jet_case(const Case& box) {
   c.run.end_time = Valve(c.valve, folder_of(c)).closed_from() + kAfterClosing;
   return c;
 }
-
-double computed_jet_height(const Case& box) { return box.grid.axis[2].points.front() - box.jet.nozzle.z(); }
 
 std::unique_ptr<JetSource> make_computed_jet(const Case& box) {
   return std::make_unique<ComputedJet>(box, computed_jet_case(box));

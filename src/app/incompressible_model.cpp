@@ -19,7 +19,7 @@ namespace {
 class IncompressibleModel : public FlowModel {
  public:
   IncompressibleModel(const Case& c, const Grid& grid)
-      : case_(c), grid_(grid), still_(c), jet_(make_jet_source(c)) {
+      : case_(c), grid_(grid), still_(c), jet_(make_jet_inlet(c)) {
     IncompressibleSetup setup;
     setup.density = still_.density;
     setup.viscosity = still_.nu;
@@ -46,9 +46,9 @@ class IncompressibleModel : public FlowModel {
     if (!jet_) return dt;
     dt = std::min(dt, kStepOfPulse * case_.valve.duration);
     // A jet that starts must not outrun the step that lets it in.
-    const double h = grid_.axis(2).width.front(), z = grid_.axis(2).face.front();
+    const double h = width_inside(grid_, jet_->face());
     for (int n = 0; n < 60; ++n) {
-      const double limit = case_.run.courant * h / std::max(jet_->fastest(time + dt, z), 1e-30);
+      const double limit = case_.run.courant * h / std::max(jet_->fastest(time + dt), 1e-30);
       if (limit >= dt) break;
       dt = std::max(limit, 0.5 * dt);
     }
@@ -120,7 +120,7 @@ class IncompressibleModel : public FlowModel {
     ledger["leak_m_s"] = l.leak;
     if (jet_ && grid_.axisymmetric()) {
       const double d = case_.valve.orifice_diameter, z0 = case_.jet.nozzle.z();
-      const double exit = jet_->fastest(last_time_, grid_.axis(2).face.front());
+      const double exit = jet_->fastest(last_time_);
       const TwoEquation* t = flow_->turbulence();
       if (const auto jet = analyse_round_jet(grid_, flow_->velocity()[2], flow_->pressure_field().view(),
                                              t ? t->eddy_viscosity() : ConstFieldView{}, still_.nu, d, exit,
@@ -145,7 +145,9 @@ class IncompressibleModel : public FlowModel {
         {"flow.turbulence", "k and epsilon or omega: transport, sources, nu_t", t.turbulence, 0},
         {"flow.ledger", "momentum and mass through the boundaries", t.ledger, 0}};
   }
-  std::vector<double> events() const override { return jet_ ? jet_->events() : std::vector<double>{}; }
+  std::vector<double> events() const override {
+    return jet_ ? jet_->source().events() : std::vector<double>{};
+  }
 
   std::vector<Field*> state_fields() override { return flow_->state(); }
   std::vector<double> state_numbers() const override {
@@ -203,7 +205,7 @@ class IncompressibleModel : public FlowModel {
   const Case& case_;
   const Grid& grid_;
   StillAir still_;
-  std::unique_ptr<JetSource> jet_;
+  std::unique_ptr<JetInlet> jet_;
   std::unique_ptr<Incompressible> flow_;
   Vec3 momentum_at_start_{0, 0, 0};
   double last_time_ = 0;

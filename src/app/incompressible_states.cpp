@@ -12,13 +12,9 @@ const char* face_name(int face) {
   return names[face];
 }
 
-BoundaryState jet_state(const Grid& grid, const StillAir& air, const JetSource& source, const Vec3& x,
+BoundaryState jet_state(const Grid& grid, const StillAir& air, const JetInlet& inlet, const Vec3& x,
                         double t) {
-  const auto half = [&](int d) {
-    const Axis& a = grid.axis(d);
-    return 0.5 * a.width[static_cast<std::size_t>(a.cell_at(x[d]))];
-  };
-  const JetState jet = source.at(x, half(0), grid.axisymmetric() ? 0.0 : half(1), t);
+  const JetState jet = inlet.at(x, half_widths(grid, x), t);
   BoundaryState s;
   for (int d = 0; d < 3; ++d) s.velocity[static_cast<std::size_t>(d)] = static_cast<Real>(jet.velocity[d]);
   const double k = std::max(jet.k, air.k);
@@ -49,7 +45,7 @@ StateFormula::StateFormula(const StateSpec& s, const StillAir& air) {
   if (s.epsilon) second = air.omega ? *s.epsilon / (0.09 * k) : *s.epsilon;
 }
 
-Boundary make_boundary(const Case& c, const Grid& grid, const StillAir& air, const JetSource* jet, int face) {
+Boundary make_boundary(const Case& c, const Grid& grid, const StillAir& air, const JetInlet* jet, int face) {
   const BoundarySpec& spec = c.boundary[static_cast<std::size_t>(face)];
   const StateFormula formula(spec.state, air);
   Boundary b;
@@ -93,8 +89,6 @@ Boundary make_boundary(const Case& c, const Grid& grid, const StillAir& air, con
       b.kind = BoundaryKind::inflow;
       break;
   }
-  if (spec.type == BoundaryType::jet && face != 4)
-    throw InputError("a jet blows along +z: it enters through boundary.z_min");
   b.varies = formula.varies;
   struct Piece {
     Vec3 centre;

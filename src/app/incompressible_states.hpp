@@ -1,7 +1,7 @@
 #pragma once
 #include <array>
 
-#include "app/jet_source.hpp"
+#include "app/jet_inlet.hpp"
 #include "case/case.hpp"
 #include "case/expression.hpp"
 #include "flow/boundary.hpp"
@@ -33,6 +33,6 @@ struct StateFormula {
 };
 
 /// What a face of the box does. Keeps references to the case, the grid and the jet (null: none enters).
-Boundary make_boundary(const Case& c, const Grid& grid, const StillAir& air, const JetSource* jet, int face);
+Boundary make_boundary(const Case& c, const Grid& grid, const StillAir& air, const JetInlet* jet, int face);
 
 }  // namespace ejecta

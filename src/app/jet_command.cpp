@@ -4,6 +4,7 @@
 #include "app/jet_store.hpp"
 #include "app/jet_sweep.hpp"
 #include "base/parallel.hpp"
+#include "case/extent.hpp"
 
 namespace ejecta {
 
@@ -13,7 +14,7 @@ int jet_case(const Case& c, const RunOptions& options) {
   const bool box = c.flow.solver != FlowSolver::compressible && !c.jet.source_case.empty();
   const Case jet = box ? computed_jet_case(c) : c;
   if (options.sweep) return sweep_jet(jet, options);
-  JetRun run(jet, box ? computed_jet_height(c) : kBoxHeight, options);
+  JetRun run(jet, box ? jet_height(c) : kBoxHeight, options);
   if (options.dry_run) return exit_done;
   run.advance_to_end();
   run.write_result();

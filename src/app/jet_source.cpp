@@ -1,8 +1,7 @@
 #include "app/jet_source.hpp"
 
-#include <algorithm>
-
 #include "app/computed_jet.hpp"
+#include "case/extent.hpp"
 #include "case/load.hpp"
 #include "flow/gas.hpp"
 #include "sorter/nozzle.hpp"
@@ -10,11 +9,16 @@
 namespace ejecta {
 namespace {
 
+JetSpec in_the_orifice(JetSpec jet) {
+  jet.nozzle = Vec3::Zero();
+  return jet;
+}
+
 /// Quasi-steady: what the orifice gives at the valve's opening of the moment.
 class ValveJet : public JetSource {
  public:
   explicit ValveJet(const Case& c)
-      : jet_(c.jet),
+      : jet_(in_the_orifice(c.jet)),
         spec_(c.valve),
         gas_{c.fluid.gamma, c.fluid.gas_constant},
         density_(c.fluid.density),
@@ -22,8 +26,8 @@ class ValveJet : public JetSource {
         temperature_(c.valve.supply_temperature > 0.0 ? c.valve.supply_temperature
                                                       : c.environment.temperature),
         valve_(c.valve, folder_of(c)),
-        far_(c.jet, c.valve, 1.0),
-        near_(c.jet, c.valve) {
+        far_(jet_, c.valve, 1.0),
+        near_(jet_, c.valve) {
     valve_.require_jet(ambient_);
   }
 
@@ -33,10 +37,10 @@ class ValveJet : public JetSource {
     const double share = near_.share(x, half_x, half_y);
     return share > 0.0 ? near_.at(share, u) : JetState{};
   }
-  double fastest(double time, double z) const override {
+  double fastest(double time, double height) const override {
     const double u = velocity(time);
     if (jet_.kind != JetKind::self_similar) return u;
-    return far_.at(Vec3(jet_.nozzle.x(), jet_.nozzle.y(), z), u).velocity.z();
+    return far_.at(Vec3(0, 0, height), u).velocity.z();
   }
   std::vector<double> events() const override { return valve_.events(); }
   double dead_from() const override { return valve_.closed_from(); }
@@ -70,13 +74,7 @@ class ValveJet : public JetSource {
 
 }  // namespace
 
-bool has_jet(const Case& c) {
-  return std::any_of(c.boundary.begin(), c.boundary.end(), [](const BoundarySpec& b) {
-    return b.type == BoundaryType::jet ||
-           std::any_of(b.patches.begin(), b.patches.end(),
-                       [](const PatchSpec& p) { return p.type == BoundaryType::jet; });
-  });
-}
+bool has_jet(const Case& c) { return jet_face(c).has_value(); }
 
 std::unique_ptr<JetSource> make_jet_source(const Case& c) {
   if (!has_jet(c)) return nullptr;

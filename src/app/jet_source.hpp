@@ -9,14 +9,15 @@
 
 namespace ejecta {
 
-/// The jet of a case as a boundary state over position and time, whatever it comes from.
+/// The jet of a case as a boundary state over position and time, whatever it comes from, in axes of its own:
+/// the origin in the orifice, z along the jet. JetInlet places it in the box.
 class JetSource {
  public:
   virtual ~JetSource() = default;
-  /// At a cell of the lower z-face; half widths of the cell, m.
+  /// At a cell; half widths of the cell, m.
   virtual JetState at(const Vec3& position, double half_x, double half_y, double time) const = 0;
-  /// Highest axial velocity at `time`, m/s: for the choice of the time step.
-  virtual double fastest(double time, double z) const = 0;
+  /// Highest axial velocity at `time` at a height above the orifice, m/s.
+  virtual double fastest(double time, double height) const = 0;
   virtual std::vector<double> events() const = 0;
   virtual double dead_from() const = 0;  ///< s: no more air enters
   /// Thrust of the valve at `time`, N: what the jet's momentum is compared with.

@@ -77,7 +77,9 @@ output::ReplayHeader replay_header(const Case& c, const CoupledModel& model) {
     h.plates.push_back({"dividing plate", model.splitter()->edge(), Vec3(1, 0, 0), Vec3(0, 1, 0),
                         c.splitter.length, Splitter::kWidth, c.splitter.thickness});
   if (model.flow() && has_jet(c)) {
-    h.nozzles.push_back({c.jet.nozzle, Vec3(0, 0, 1), c.valve.orifice_diameter});
+    const Vec3 along = c.jet.direction.normalized();
+    h.nozzles.push_back({c.jet.nozzle, along, c.valve.orifice_diameter});
+    for (const Vec3& x : c.jet.more_nozzles) h.nozzles.push_back({x, along, c.valve.orifice_diameter});
     h.valve_open.push_back({c.valve.opens_at, c.valve.opens_at + c.valve.duration});
     for (double t : c.valve.more_pulses) h.valve_open.push_back({t, t + c.valve.duration});
   }

@@ -144,11 +144,13 @@ struct ValveSpec {
 /// [jet]: what enters the box through a boundary of type "jet"
 struct JetSpec {
   JetKind kind = JetKind::self_similar;
-  Vec3 nozzle{0, 0, 0};         ///< m, centre of the orifice; the jet blows along +z
-  double velocity_decay = 0.0;  ///< B in U_c/U_0 = B d/(z - z0); 0: what keeps the momentum of the valve
-  double spreading = 0.094;     ///< S = r_half/(z - z0)
-  double virtual_origin = 0.0;  ///< z0/d
-  double inlet_velocity = 0.0;  ///< m/s for "velocity-inlet"; 0: the momentum-equivalent velocity
+  Vec3 nozzle{0, 0, 0};            ///< m, centre of the orifice
+  Vec3 direction{0, 0, 1};         ///< along which the jet blows, of any length
+  std::vector<Vec3> more_nozzles;  ///< m, further orifices of the same valve
+  double velocity_decay = 0.0;     ///< B in U_c/U_0 = B d/(z - z0); 0: what keeps the momentum of the valve
+  double spreading = 0.094;        ///< S = r_half/(z - z0)
+  double virtual_origin = 0.0;     ///< z0/d
+  double inlet_velocity = 0.0;     ///< m/s for "velocity-inlet"; 0: the momentum-equivalent velocity
   double turbulence_intensity = 0.05;
   std::string source_case;  ///< for "computed": the jet case
   /// `ejecta jet` also computes the incompressible jet of the momentum-equivalent velocity (paper, Figure 7)

@@ -45,6 +45,23 @@ double widest_cell(const AxisSpec& axis, double from, double to) {
   return widest;
 }
 
+std::optional<int> jet_face(const Case& c) {
+  for (int f = 0; f < 6; ++f) {
+    const BoundarySpec& face = c.boundary[static_cast<std::size_t>(f)];
+    if (face.type == BoundaryType::jet ||
+        std::any_of(face.patches.begin(), face.patches.end(),
+                    [](const PatchSpec& p) { return p.type == BoundaryType::jet; }))
+      return f;
+  }
+  return {};
+}
+
+double jet_height(const Case& c) {
+  const int face = *jet_face(c), d = face / 2;
+  const std::vector<double>& points = c.grid.axis[static_cast<std::size_t>(d)].points;
+  return ((face % 2 ? points.back() : points.front()) - c.jet.nozzle[d]) / c.jet.direction.normalized()[d];
+}
+
 Vec3 half_extent(const BodySpec& b) {
   switch (b.shape) {
     case ShapeKind::sphere:

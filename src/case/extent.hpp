@@ -25,6 +25,12 @@ void refine(GridSpec&, double factor);
 /// Largest width of the cells of an axis that touch [from, to], or the nearest cell's; m.
 double widest_cell(const AxisSpec& axis, double from, double to);
 
+/// The face through which the jet enters: the first of type "jet" or with an orifice on it, 0..5 = x_min,
+/// x_max, y_min, ...
+std::optional<int> jet_face(const Case&);
+/// From jet.nozzle along the jet to the plane of that face, m; of a case with a grid and a jet.
+double jet_height(const Case&);
+
 /// Half edge lengths of the box around a body in its own axes, m; zero for a mesh, which only the file knows.
 Vec3 half_extent(const BodySpec&);
 /// What a grid must resolve: smallest sphere or edge, m; zero when unknown.

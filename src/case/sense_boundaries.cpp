@@ -14,6 +14,23 @@ namespace {
 
 bool is_incompressible(const Case& c) { return c.flow.solver == FlowSolver::incompressible; }
 
+/// A jet enters through one face, into the box, and not at a grazing angle.
+void check_jet_face(const Case& c, std::size_t f, const std::string& key, Findings& found) {
+  if (const auto first = static_cast<std::size_t>(*jet_face(c)); first != f)
+    found.error(key + ".type", fmt::format("the jet enters through {} already", face_names[first]),
+                "one face of type \"jet\"; jet.more_nozzles for further orifices", "type = \"free-stream\"");
+  const double length = c.jet.direction.norm();
+  const double inward = (f % 2 ? -1.0 : 1.0) * c.jet.direction[static_cast<int>(f / 2)];
+  if (inward >= 0.5 * length && length > 0.0) return;
+  Vec3 normal = Vec3::Zero();
+  normal[static_cast<int>(f / 2)] = f % 2 ? -1.0 : 1.0;
+  found.error(key + ".type",
+              fmt::format("the jet blows along ({:g}, {:g}, {:g}) and does not enter through {}",
+                          c.jet.direction.x(), c.jet.direction.y(), c.jet.direction.z(), face_names[f]),
+              "a jet.direction into the box, within 60 degrees of the face's normal",
+              fmt::format("[jet] direction = [{:g}, {:g}, {:g}]", normal.x(), normal.y(), normal.z()));
+}
+
 void check_face(const Case& c, std::size_t f, const std::string& key, Findings& found) {
   const BoundarySpec& face = c.boundary[f];
   const BoundarySpec& opposite = c.boundary[f ^ 1u];
@@ -32,9 +49,10 @@ void check_face(const Case& c, std::size_t f, const std::string& key, Findings& 
                 "\"pressure-outlet\" or \"free-stream\"", "type = \"free-stream\"");
   const bool jet_patch = std::any_of(face.patches.begin(), face.patches.end(),
                                      [](const PatchSpec& p) { return p.type == BoundaryType::jet; });
-  if ((face.type == BoundaryType::jet || jet_patch) && f != 4)
-    found.error(key + ".type", "the jet blows along +z and can enter through z_min only",
-                "[boundary.z_min] type = \"jet\"", "[boundary.z_min]");
+  if (jet_patch && f != 4)
+    found.error(key + ".patch", "an orifice stands in z_min only", "[[boundary.z_min.patch]]",
+                "[[boundary.z_min.patch]]");
+  if (face.type == BoundaryType::jet || (jet_patch && f == 4)) check_jet_face(c, f, key, found);
   if (c.grid.geometry == Geometry::axisymmetric && f / 2 == 1 && face.type != BoundaryType::wall &&
       face.type != BoundaryType::symmetry)
     found.error(key + ".type", "the faces around the axis are cuts, not boundaries",

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 
 #include "base/units.hpp"
@@ -12,13 +13,7 @@
 namespace ejecta {
 namespace {
 
-bool has_jet(const Case& c) {
-  const BoundarySpec& floor = c.boundary[4];
-  return c.flow.solver != FlowSolver::none &&
-         (floor.type == BoundaryType::jet ||
-          std::any_of(floor.patches.begin(), floor.patches.end(),
-                      [](const PatchSpec& p) { return p.type == BoundaryType::jet; }));
-}
+bool has_jet(const Case& c) { return c.flow.solver != FlowSolver::none && jet_face(c); }
 
 /// Cells across the orifice below which its jet means nothing
 constexpr double kFewestAcross = 8.0;
@@ -49,6 +44,33 @@ void check_orifice(const Case& c, Findings& found) {
 }
 
 std::string ms(double seconds) { return fmt::format("{:.3g} ms", 1e3 * seconds); }
+
+/// Where the orifices stand and whither they blow.
+void check_placing(const Case& c, Findings& found) {
+  const bool up = c.jet.direction.x() == 0.0 && c.jet.direction.y() == 0.0 && c.jet.direction.z() > 0.0;
+  if (c.grid.geometry == Geometry::axisymmetric && !(up && c.jet.more_nozzles.empty()))
+    found.error(up ? "jet.more_nozzles" : "jet.direction",
+                "in axisymmetric geometry one jet blows along its axis, +z", "neither of the two, or a box",
+                "direction = [0, 0, 1]");
+  if (c.launch.enabled && !up)
+    found.error("jet.direction", "the belt throws bodies over a jet that blows upwards", "no [launch], or +z",
+                "direction = [0, 0, 1]");
+  if (!grid_box(c)) return;
+  Case other = c;
+  for (const Vec3& nozzle : c.jet.more_nozzles) {
+    other.jet.nozzle = nozzle;
+    if (std::abs(jet_height(other) - jet_height(c)) > 1e-6 * std::abs(jet_height(c)) + 1e-9)
+      found.error("jet.more_nozzles", "the orifices are not at one distance from the face", "one plane");
+  }
+  if (c.jet.kind == JetKind::computed && jet_height(c) <= 0.0)
+    found.error("jet.nozzle", "the face through which the jet enters does not lie ahead of its orifice",
+                "an orifice outside of the box, behind that face",
+                "nozzle = [\"0 mm\", \"0 mm\", \"-40 mm\"]");
+  if (c.jet.kind == JetKind::velocity_inlet &&
+      c.jet.direction.cwiseAbs().maxCoeff() < (1.0 - 1e-9) * c.jet.direction.norm())
+    found.error("jet.direction", "an orifice in the face itself blows along the face's normal",
+                "the normal, or another jet.kind", "direction = [0, 0, 1]");
+}
 
 /// The time at which the undisturbed body is over the jet against the time at which the jet blows.
 void check_pulse(const Case& c, const BodySpec& b, Findings& found) {
@@ -97,13 +119,14 @@ void sense_sorter(const Case& c, Findings& found) {
     if (v.supply_pressure <= c.environment.pressure)
       found.error("valve.supply_pressure", "the supply is not above the ambient pressure: nothing flows",
                   "more than ambient", "supply_pressure = \"700 kPa gauge\"");
-    const double bottom = c.grid.axis[2].points.empty() ? 0.0 : c.grid.axis[2].points.front();
+    check_placing(c, found);
+    const double height = grid_box(c) ? jet_height(c) : 0.0;
     if (c.flow.solver == FlowSolver::incompressible && c.jet.kind == JetKind::self_similar &&
-        bottom - c.jet.nozzle[2] - c.jet.virtual_origin * v.orifice_diameter < 10.0 * v.orifice_diameter)
+        height - c.jet.virtual_origin * v.orifice_diameter < 10.0 * v.orifice_diameter)
       found.error("jet.kind", "a self-similar jet needs the box to begin well above the nozzle",
                   "at least 10 orifice diameters between jet.nozzle and z_min, or kind = \"velocity-inlet\"",
                   "[grid.z] points = [\"40 mm\", \"120 mm\"]");
-    if (c.jet.kind == JetKind::velocity_inlet && std::abs(bottom - c.jet.nozzle[2]) > v.orifice_diameter)
+    if (c.jet.kind == JetKind::velocity_inlet && std::abs(height) > v.orifice_diameter)
       found.error(
           "jet.kind", "a velocity inlet stands in the nozzle's exit, but the box does not begin there",
           "[grid.z] points from jet.nozzle on, or kind = \"self-similar\"", "kind = \"self-similar\"");

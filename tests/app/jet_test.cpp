@@ -11,10 +11,12 @@
 #include "app/jet_store.hpp"
 #include "app/jet_sweep.hpp"
 #include "base/error.hpp"
+#include "case/extent.hpp"
 #include "case/load.hpp"
 #include "case/words.hpp"
 #include "output/build_info.hpp"
 #include "scratch_directory.hpp"
+#include "small_jet.hpp"
 
 using namespace ejecta;
 using testing::HasSubstr;
@@ -22,53 +24,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// A jet small enough for a second: 8 cells across the orifice, 12 mm long.
-std::string small_jet(const std::string& more = "") {
-  return R"(
-[run]
-end_time = "0.2 ms"
-courant = 0.9
-[flow]
-solver = "compressible"
-turbulence = "k-epsilon"
-[valve]
-supply_pressure = "700 kPa gauge"
-orifice_diameter = "1.8 mm"
-rise_time = "0.02 ms"
-fall_time = "0 ms"
-duration = "0.1 ms"
-[launch]
-stand_off = "10 mm"
-[grid]
-geometry = "axisymmetric"
-[grid.x]
-points = ["0 mm", "0.9 mm", "10 mm"]
-cells = [4, 16]
-grading = [1, 6]
-[grid.y]
-points = ["0 mm", "1 mm"]
-cells = [1]
-[grid.z]
-points = ["0 mm", "12 mm"]
-cells = [40]
-[boundary.x_max]
-type = "free-stream"
-[boundary.y_min]
-type = "symmetry"
-[boundary.y_max]
-type = "symmetry"
-[boundary.z_min]
-type = "wall"
-[[boundary.z_min.patch]]
-type = "jet"
-centre = ["0 mm", "0 mm", "0 mm"]
-radius = "0.9 mm"
-[boundary.z_max]
-type = "wave-transmissive"
-)" + more;
-}
-
-Case small_case(const std::string& more = "") { return parse_case(small_jet(more), "small jet"); }
+Case small_case(const std::string& more = "") { return parse_case(test::small_jet(more), "small jet"); }
 
 class Folder : public testing::Test {
  protected:
@@ -164,7 +120,7 @@ TEST(PaperJet, ComesWithItsCases) {
     if (entry.path().extension() != ".toml") continue;
     const Case box = load_case(entry.path().string());
     if (box.jet.kind != JetKind::computed) continue;
-    const fs::path file = shipped_jet_file(computed_jet_case(box), computed_jet_height(box));
+    const fs::path file = shipped_jet_file(computed_jet_case(box), jet_height(box));
     ASSERT_TRUE(fs::exists(file)) << entry.path() << " asks for " << file;
     EXPECT_GT(JetProfile::read(file).fastest(7e-3), 100.0);
     ++fed;

