@@ -208,7 +208,7 @@ bool Boundaries::holds_gas_back(int face) const {
   return std::any_of(cells.begin(), cells.end(), [&](std::uint8_t handle) {
     const BoundaryType type = conditions_[handle].type;
     return type == BoundaryType::wall || type == BoundaryType::moving_wall || type == BoundaryType::slip ||
-           type == BoundaryType::symmetry || type == BoundaryType::total_pressure;
+           type == BoundaryType::total_pressure;
   });
 }
 

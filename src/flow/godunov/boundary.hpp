@@ -76,7 +76,7 @@ class Boundaries {
   void extend(Field& field) const;
   bool is_wall(int face) const;  ///< apart from its patches
   bool is_periodic(int axis) const;
-  bool holds_gas_back(int face) const;  ///< somewhere: a wall, a plane of symmetry, an inlet while it is shut
+  bool holds_gas_back(int face) const;  ///< somewhere: a wall, an inlet while it is shut
 
  private:
   struct Face {

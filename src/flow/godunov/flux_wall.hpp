@@ -19,7 +19,8 @@ EJECTA_KERNEL Real wall_pressure(const GasConstants& gas, Real rho, Real un, Rea
 }
 
 /// Convection through the outermost faces of a grid, as a convection of FluxKernel: nothing but pressure
-/// passes a wall, told by its ghost, the mirror image of the gas; the other faces are as inside.
+/// passes a wall, told by its ghost, the mirror image of the gas; the other faces are as inside. So is a
+/// plane of symmetry, on which half a flow must be half of the whole.
 struct WallConvection {
   template <int D, class P, class Kernel>
   EJECTA_KERNEL Flux flux(const Kernel& at, const Primitive& l, const Primitive& r,
