@@ -101,7 +101,10 @@ class CompressibleModel : public FlowModel {
       for (int j = 0; j < grid_.ny(); ++j)
         for (int i = 0; i < grid_.nx(); ++i) {
           const GasState s = solver_->at(i, j, k);
-          if (s.density > 0.0 && s.pressure > 0.0 && std::isfinite(s.velocity.sum() + s.density + s.pressure))
+          // Eddies faster than sound are no turbulence: the model has run away.
+          const bool tame = !(s.k * s.density > case_.fluid.gamma * s.pressure);
+          if (s.density > 0.0 && s.pressure > 0.0 && tame &&
+              std::isfinite(s.velocity.sum() + s.density + s.pressure))
             continue;
           if (where) *where = grid_.centre(i, j, k);
           return false;
