@@ -9,8 +9,6 @@
 #include "base/error.hpp"
 #include "case/extent.hpp"
 #include "case/load.hpp"
-#include "flow/gas.hpp"
-#include "sorter/nozzle.hpp"
 #include "sorter/valve.hpp"
 
 namespace ejecta {
@@ -53,14 +51,6 @@ class ComputedJet : public JetSource {
     return list;
   }
   double dead_from() const override { return starts_ + profile_.end_time(); }
-  double thrust(double time) const override {
-    const double ambient = source_.environment.pressure;
-    const double t0 = source_.valve.supply_temperature > 0.0 ? source_.valve.supply_temperature
-                                                             : source_.environment.temperature;
-    const NozzleExit exit = nozzle_exit({source_.fluid.gamma, source_.fluid.gas_constant},
-                                        valve_.total_pressure(time - starts_, ambient), t0, ambient);
-    return nozzle_thrust(exit, source_.valve.discharge_coefficient, source_.valve.orifice_diameter);
-  }
 
  private:
   double starts_;  ///< s, command of the box's valve

@@ -44,11 +44,6 @@ class ValveJet : public JetSource {
   }
   std::vector<double> events() const override { return valve_.events(); }
   double dead_from() const override { return valve_.closed_from(); }
-  double thrust(double time) const override {
-    if (jet_.inlet_velocity > 0.0)
-      return density_ * nozzle_area(spec_.orifice_diameter) * std::pow(velocity(time), 2);
-    return nozzle_thrust(exit(time), spec_.discharge_coefficient, spec_.orifice_diameter);
-  }
 
  private:
   NozzleExit exit(double time) const {

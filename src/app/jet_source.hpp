@@ -20,8 +20,6 @@ class JetSource {
   virtual double fastest(double time, double height) const = 0;
   virtual std::vector<double> events() const = 0;
   virtual double dead_from() const = 0;  ///< s: no more air enters
-  /// Thrust of the valve at `time`, N: what the jet's momentum is compared with.
-  virtual double thrust(double time) const = 0;
 };
 
 std::unique_ptr<JetSource> make_jet_source(const Case& c);
