@@ -43,10 +43,21 @@ CoupledModel::CoupledModel(const Case& c)
   torque_sum_.assign(n, Vec3::Zero());
   before_.resize(n);
   peak_speed_.assign(n, 0.0);
-  if (flow_ && n > 0) coupling_.emplace(grid_, flow_->density(), c.environment.gravity);
+  if (flow_ && n > 0) coupling_.emplace(grid_, coupling_setup());
   if (const auto jet = flow_ ? make_jet_source(c) : nullptr) dead_from_ = jet->dead_from();
   check_bodies();
   build_step();
+}
+
+CouplingSetup CoupledModel::coupling_setup() const {
+  CouplingSetup s;
+  s.fluid_density = flow_->density();
+  s.gravity = case_.environment.gravity;
+  s.bodies = case_.flow.solver == FlowSolver::incompressible ? BodiesAs::cut_cells : BodiesAs::forced_cells;
+  if (s.bodies == BodiesAs::cut_cells) s.body_force = case_.flow.body_force;
+  for (std::size_t d = 0; d < 3; ++d)
+    s.periodic[d] = grid_.active(int(d)) && case_.boundary[2 * d].type == BoundaryType::periodic;
+  return s;
 }
 
 void CoupledModel::place_bodies() {

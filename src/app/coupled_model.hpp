@@ -60,6 +60,7 @@ class CoupledModel {
   void restore_numbers(const std::vector<std::vector<double>>& numbers, double time);
 
  private:
+  CouplingSetup coupling_setup() const;
   void place_bodies();
   void check_bodies() const;
   void build_step();

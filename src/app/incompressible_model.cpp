@@ -57,6 +57,7 @@ class IncompressibleModel : public FlowModel {
   double courant(double dt) const override { return flow_->courant(dt); }
   void advance(double time, double dt, SolidMask& solids) override {
     flow_->advance(time, dt, solids);
+    cut_ = &solids.cut;
     last_time_ = time + dt;
   }
   double density() const override { return still_.density; }
@@ -103,7 +104,7 @@ class IncompressibleModel : public FlowModel {
   void report(nlohmann::ordered_json& result) const override {
     const FlowLedger& l = flow_->ledger();
     const Vec3 change = flow_->momentum() - momentum_at_start_;
-    Vec3 lost = change - l.momentum_through_boundaries + l.impulse_on_solids;
+    Vec3 lost = change - l.momentum_through_boundaries + l.impulse_on_solids - l.displaced;
     if (grid_.axisymmetric()) lost.x() = 0.0;  // radial momentum is not conserved
     const double scale =
         std::max({l.momentum_through_boundaries.norm(), l.impulse_on_solids.norm(), change.norm(), 1e-30});
@@ -116,8 +117,9 @@ class IncompressibleModel : public FlowModel {
                                                  l.momentum_through_boundaries.z()};
     ledger["impulse_on_solids_N_s"] = {l.impulse_on_solids.x(), l.impulse_on_solids.y(),
                                        l.impulse_on_solids.z()};
-    ledger["largest_divergence"] = flow_->largest_divergence();
-    ledger["leak_m_s"] = l.leak;
+    ledger["momentum_of_displaced_fluid_N_s"] = {l.displaced.x(), l.displaced.y(), l.displaced.z()};
+    const CutCells none;
+    ledger["largest_divergence"] = flow_->largest_divergence(cut_ ? *cut_ : none);
     if (jet_ && grid_.axisymmetric()) {
       const double d = case_.valve.orifice_diameter, z0 = case_.jet.nozzle.z();
       const double exit = jet_->fastest(last_time_);
@@ -153,17 +155,17 @@ class IncompressibleModel : public FlowModel {
   std::vector<double> state_numbers() const override {
     const FlowLedger& l = flow_->ledger();
     std::vector<double> n;
-    for (const Vec3& v : {l.momentum_through_boundaries, l.impulse_on_solids, momentum_at_start_})
+    for (const Vec3& v : {l.momentum_through_boundaries, l.impulse_on_solids, l.displaced, momentum_at_start_})
       n.insert(n.end(), {v.x(), v.y(), v.z()});
-    n.insert(n.end(), {l.mass_through_boundaries, l.mass_in, l.leak});
+    n.insert(n.end(), {l.mass_through_boundaries, l.mass_in});
     return n;
   }
   void restore_numbers(std::span<const double> n, double time) override {
     FlowLedger& l = flow_->ledger();
     StateReader in(n, "ledger of the air");
-    for (Vec3* v : {&l.momentum_through_boundaries, &l.impulse_on_solids, &momentum_at_start_})
+    for (Vec3* v : {&l.momentum_through_boundaries, &l.impulse_on_solids, &l.displaced, &momentum_at_start_})
       *v = in.vec3();
-    for (double* v : {&l.mass_through_boundaries, &l.mass_in, &l.leak}) *v = in.number();
+    for (double* v : {&l.mass_through_boundaries, &l.mass_in}) *v = in.number();
     in.end();
     flow_->resume(time);
   }
@@ -209,6 +211,7 @@ class IncompressibleModel : public FlowModel {
   std::unique_ptr<Incompressible> flow_;
   Vec3 momentum_at_start_{0, 0, 0};
   double last_time_ = 0;
+  const CutCells* cut_ = nullptr;  // of the last step
 };
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "base/real.hpp"
+#include "flow/cut_cells.hpp"
 
 namespace ejecta {
 
@@ -27,7 +28,8 @@ struct SolidCell {
 /// The seam between bodies and flow. Coupling (or an analytic test) fills `cells`, ordered by body; the flow
 /// adds up in `impulse` what it had to do to the fluid.
 struct SolidMask {
-  std::vector<SolidCell> cells;
+  CutCells cut;                  ///< what incompressible flow reads
+  std::vector<SolidCell> cells;  ///< what compressible flow reads
   /// What the last flow step gave to the fluid of the cell, N s.
   std::vector<std::array<double, 3>> impulse;
   std::vector<double> work;                 ///< the same of kinetic energy, J; compressible flow alone

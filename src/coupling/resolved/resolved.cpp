@@ -15,8 +15,11 @@ constexpr double kRamp = 0.2;
 
 }  // namespace
 
-ResolvedCoupling::ResolvedCoupling(const Grid& grid, double fluid_density, const Vec3& gravity)
-    : grid_(grid), density_(fluid_density), gravity_(gravity), planes_(static_cast<std::size_t>(grid.nz())) {}
+ResolvedCoupling::ResolvedCoupling(const Grid& grid, CouplingSetup setup)
+    : grid_(grid),
+      setup_(std::move(setup)),
+      cut_map_(grid, setup_.periodic),
+      planes_(static_cast<std::size_t>(grid.nz())) {}
 
 ResolvedCoupling::Extent ResolvedCoupling::extent(const Body& body) const {
   Extent e{};
@@ -102,6 +105,7 @@ void ResolvedCoupling::map_row(const Body& body, int index, const Extent& e, int
 }
 
 void ResolvedCoupling::map(std::span<const Body> bodies, SolidMask& mask) {
+  if (setup_.bodies == BodiesAs::cut_cells) return cut_map_.map(bodies, setup_.roughness, mask.cut);
   mask.cells.clear();
   for (int b = 0; b < static_cast<int>(bodies.size()); ++b) {
     const Body& body = bodies[static_cast<std::size_t>(b)];
@@ -123,7 +127,35 @@ void ResolvedCoupling::map(std::span<const Body> bodies, SolidMask& mask) {
 void ResolvedCoupling::collect(std::span<const Body> bodies, const SolidMask& mask, double dt,
                                std::span<Load> loads) {
   motion_.resize(bodies.size());
+  parts_.assign(bodies.size(), {});
   for (Load& l : loads) l = Load{};
+  if (setup_.bodies == BodiesAs::cut_cells) collect_walls(bodies, mask.cut, dt, loads);
+  else collect_forcing(bodies, mask, dt, loads);
+}
+
+void ResolvedCoupling::collect_walls(std::span<const Body> bodies, const CutCells& cut, double dt,
+                                     std::span<Load> loads) {
+  std::vector<double>& area = wetted_;
+  area.assign(bodies.size(), 0.0);
+  for (std::size_t n = 0; n < cut.walls.size(); ++n) {
+    const CutWall& w = cut.walls[n];
+    const std::size_t b = static_cast<std::size_t>(w.body);
+    const Vec3 pressure = cut.pressure_impulse[n] / dt, friction = cut.friction_impulse[n] / dt;
+    parts_[b].pressure += pressure;
+    parts_[b].friction += friction;
+    loads[b].torque += (w.point - bodies[b].position).cross(pressure + friction);
+    area[b] += Vec3(w.area[0], w.area[1], w.area[2]).norm();
+  }
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    const Body& body = bodies[b];
+    loads[b].force = parts_[b].pressure + parts_[b].friction;
+    if (area[b] > 0.0)
+      loads[b].force += setup_.fluid_density * body.shape.mass_properties().volume * (setup_.body_force - setup_.gravity);
+  }
+}
+
+void ResolvedCoupling::collect_forcing(std::span<const Body> bodies, const SolidMask& mask, double dt,
+                                       std::span<Load> loads) {
   std::vector<double>& volume = wetted_;
   volume.assign(bodies.size(), 0.0);
   for (std::size_t n = 0; n < mask.cells.size(); ++n) {
@@ -137,26 +169,17 @@ void ResolvedCoupling::collect(std::span<const Body> bodies, const SolidMask& ma
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     const Body& body = bodies[b];
     Before& m = motion_[b];
-    const double fluid_share = density_ * body.shape.mass_properties().volume / body.mass;
+    const double fluid_share = setup_.fluid_density * body.shape.mass_properties().volume / body.mass;
     const Vec3 momentum = fluid_share * body.angular_momentum();
     if (m.known && body.motion == Motion::free) {
-      loads[b].force += density_ * volume[b] * (body.velocity - m.velocity) / dt;
+      loads[b].force += setup_.fluid_density * volume[b] * (body.velocity - m.velocity) / dt;
       if (volume[b] > 0.0) loads[b].torque += (momentum - m.angular_momentum) / dt;
     }
     m.velocity = body.velocity;
     m.angular_momentum = momentum;
     m.known = true;
-    if (volume[b] > 0.0) loads[b].force -= density_ * body.shape.mass_properties().volume * gravity_;
+    if (volume[b] > 0.0) loads[b].force -= setup_.fluid_density * body.shape.mass_properties().volume * setup_.gravity;
   }
-}
-
-double ResolvedCoupling::cells_across(const Body& body) const {
-  const Extent e = extent(body);
-  double widest = 0.0;
-  for (int d = 0; d < 3; ++d)
-    for (int i = e.lower[d]; grid_.active(d) && i < e.upper[d]; ++i)
-      widest = std::max(widest, grid_.axis(d).width[static_cast<std::size_t>(i)]);
-  return widest > 0.0 ? body.shape.smallest_feature() / widest : 0.0;
 }
 
 bool ResolvedCoupling::any_inside(std::span<const Body> bodies) const {

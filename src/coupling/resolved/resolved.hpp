@@ -2,6 +2,7 @@
 #include <span>
 #include <vector>
 
+#include "coupling/resolved/cut_map.hpp"
 #include "dem/body.hpp"
 #include "dem/loads.hpp"
 #include "flow/solid_mask.hpp"
@@ -9,23 +10,37 @@
 
 namespace ejecta {
 
-/// Resolved two-way coupling of bodies and flow. Bodies become cells the flow must move with;
-/// what the flow had to do to the fluid there, with the opposite sign, is what the fluid does to the bodies.
+/// How the flow sees bodies: as cut cells with walls (incompressible), or as cells it drives to their velocity, whose
+/// reaction is the force (compressible).
+enum class BodiesAs { cut_cells, forced_cells };
+
+struct CouplingSetup {
+  double fluid_density = 0.0;  ///< kg/m3
+  Vec3 gravity{0, 0, 0};       ///< acts on the fluid as well, hidden in its hydrostatic pressure: returns as buoyancy
+  Vec3 body_force{0, 0, 0};    ///< m/s2 that drives the fluid like a gradient of pressure: acts on bodies by volume
+  BodiesAs bodies = BodiesAs::cut_cells;
+  std::array<bool, 3> periodic{};
+  std::vector<double> roughness;  ///< of every body, sand-grain height, m
+};
+
+/// The air's force on a body over the last flow step by its parts, N.
+struct ForceParts {
+  Vec3 pressure{0, 0, 0}, friction{0, 0, 0};
+};
+
+/// Resolved two-way coupling of bodies and flow.
 class ResolvedCoupling {
  public:
-  /// `gravity` acts on the fluid as well, hidden in its hydrostatic pressure: it returns as buoyancy.
-  ResolvedCoupling(const Grid& grid, double fluid_density, const Vec3& gravity);
+  ResolvedCoupling(const Grid& grid, CouplingSetup setup);
 
-  /// Lists the cells whose centres lie inside bodies, body by body.
+  /// Fills mask.cut, or mask.cells with the cells whose centres lie inside bodies.
   void map(std::span<const Body> bodies, SolidMask& mask);
-  /// Force and torque on every body over the last flow step of length dt:
-  ///   F = -sum(impulse) / dt + rho V a - rho V g,
-  /// where the second term returns the inertia of the fictitious fluid inside the body (Uhlmann 2005, eq.
-  /// 18), with the body's acceleration over the step before.
+  /// Force and torque on every body over the last flow step of length dt. Cut cells: pressure and friction on its walls
+  /// and buoyancy. Forced cells: F = -sum(impulse) / dt + rho V a - rho V g, where the second term returns the inertia
+  /// of the fictitious fluid inside the body (Uhlmann 2005, eq. 18), with the body's acceleration over the step before.
   void collect(std::span<const Body> bodies, const SolidMask& mask, double dt, std::span<Load> loads);
 
-  /// Cells across the smallest feature of a body where it is now, in the coarsest direction.
-  double cells_across(const Body& body) const;
+  const std::vector<ForceParts>& parts() const { return parts_; }
   /// False once no body touches the box.
   bool any_inside(std::span<const Body> bodies) const;
   /// Velocities of the last collection, for checkpoints.
@@ -41,13 +56,17 @@ class ResolvedCoupling {
   void map_row(const Body& body, int index, const Extent& e, int j, int k, std::vector<SolidCell>& out) const;
   SolidCell solid_cell(const Body& body, int index, int i, int j, int k, double distance) const;
 
+  void collect_walls(std::span<const Body> bodies, const CutCells& cut, double dt, std::span<Load> loads);
+  void collect_forcing(std::span<const Body> bodies, const SolidMask& mask, double dt, std::span<Load> loads);
+
   struct Before {
     Vec3 velocity{0, 0, 0}, angular_momentum{0, 0, 0};
     bool known = false;
   };
   const Grid& grid_;
-  double density_;
-  Vec3 gravity_;
+  CouplingSetup setup_;
+  CutMap cut_map_;
+  std::vector<ForceParts> parts_;
   std::vector<Before> motion_;
   std::vector<std::vector<SolidCell>> planes_;  // scratch, one list a plane of cells
   std::vector<double> wetted_;                  // scratch, volume of the cells of each body, m3

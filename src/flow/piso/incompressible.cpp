@@ -8,7 +8,7 @@
 
 #include "base/error.hpp"
 #include "base/stopwatch.hpp"
-#include "flow/piso/forcing.hpp"
+#include "flow/cut_ghosts.hpp"
 #include "flow/piso/momentum.hpp"
 #include "flow/piso/projection.hpp"
 #include "flow/stencil.hpp"
@@ -18,6 +18,9 @@ namespace {
 
 /// What each of the two stages of Heun's method counts in a step.
 constexpr double kStageWeight = 0.5;
+/// What may pass closed faces after a correction, of what would without it. Pressure is incremental: what is left over
+/// is met again in the next correction.
+constexpr double kClosedTolerance = 1e-2;
 
 std::array<PoissonBoundary, 6> poisson_boundaries(const std::array<Boundary, 6>& faces) {
   std::array<PoissonBoundary, 6> b;
@@ -50,9 +53,10 @@ Incompressible::Incompressible(const Grid& grid, std::array<Boundary, 6> boundar
       setup_(setup),
       boundaries_(grid, boundaries),
       poisson_(grid, poisson_boundaries(boundaries)),
+      cut_flow_(grid, setup.viscosity),
+      cut_pressure_(grid, poisson_, poisson_boundaries(boundaries)),
       p_(grid.make_field()),
       phi_(grid.make_field()),
-      solid_(grid.make_field()),
       smoother_(grid) {
   check_periodic(grid, boundaries);
   for (auto* group : {&u_, &u_old_, &u_star_, &q_})
@@ -89,7 +93,8 @@ void Incompressible::initialise(const std::function<Vec3(const Vec3&)>& velocity
   boundaries_.update(time);
   // One projection with an arbitrary step: only velocities change, the pressure is the one given.
   const Real dt = 1;
-  SolidMask none;
+  const CutCells none;
+  cut_pressure_.begin(none);
   Field given = p_;
   p_.fill(0);
   for (int c = 0; c < 3; ++c) u_star_[c] = u_[c];
@@ -112,7 +117,7 @@ void Incompressible::evaluate_source(double time) {
   });
 }
 
-BoundaryFlow Incompressible::predict(double a, double b, double time, Real dt) {
+BoundaryFlow Incompressible::predict(double a, double b, double time, Real dt, CutCells& cut) {
   {
     ScopedTimer timer(times_.boundaries);
     boundaries_.fill_velocity(views(u_), views(q_));
@@ -135,32 +140,16 @@ BoundaryFlow Incompressible::predict(double a, double b, double time, Real dt) {
   t.dt = dt;
   t.increment_only = smoothing_;
   const BoundaryFlow through = predict_momentum(grid_, t, boundary_sums_);
+  move_displaced(kStageWeight * double(dt) * cut_flow_.predict(cut, t));
   for (int c = 0; smoothing_ && c < 3; ++c) smoother_.apply(u_star_[c].view(), {t.old[c], t.a, t.u[c], t.b});
   return through;
 }
 
-void Incompressible::force(SolidMask& solids, double weight) {
-  ScopedTimer timer(times_.forcing);
-  force_solids(grid_, solids, weight * setup_.density, views(u_star_));
+WallTurbulence Incompressible::wall_turbulence() const {
+  return turbulence_ ? WallTurbulence{turbulence_->k().view(), turbulence_->eddy_viscosity()} : WallTurbulence{};
 }
 
-/// Faces of solid cells: the plain mean of the two cells, since the pressure inside a solid must not move the
-/// faces of the fluid; between two cells inside it the rigid velocity itself, which is free of divergence.
-void Incompressible::meet_solids(const SolidMask& solids) {
-  using Cell = std::array<int, 3>;
-  for_each_face_of_solids(
-      grid_, solids,
-      [&](const SolidCell& c, int d, const Cell& below, const Cell& above, const Cell& beyond) {
-        const Field& u = u_star_[static_cast<std::size_t>(d)];
-        const Real weight = grid_.metrics(d).weight[above[static_cast<std::size_t>(d)]];
-        const Real mean =
-            weight * u(below[0], below[1], below[2]) + (Real(1) - weight) * u(above[0], above[1], above[2]);
-        const Real inside = c.weight * solid_(beyond[0], beyond[1], beyond[2]);
-        q_[static_cast<std::size_t>(d)](above[0], above[1], above[2]) = mean + inside * (c.solid[d] - mean);
-      });
-}
-
-void Incompressible::correct(const SolidMask& solids, Real dt) {
+void Incompressible::correct(const CutCells& cut, Real dt) {
   {
     ScopedTimer timer(times_.faces);
     bool periodic = false;
@@ -168,64 +157,79 @@ void Incompressible::correct(const SolidMask& solids, Real dt) {
       periodic = periodic || (grid_.active(f / 2) && boundaries_.kind(f) == BoundaryKind::periodic);
     if (periodic) boundaries_.fill_velocity(views(u_star_), views(q_));
     face_velocities(grid_, std::as_const(*this).views(u_star_), p_.view(), dt, views(q_));
-    meet_solids(solids);
+    cut_flow_.face_velocities(cut, std::as_const(*this).views(u_star_), p_.view(), dt, views(q_));
     boundaries_.fill_face_velocity(views(q_), views(u_star_), p_.view(), dt);
+    cut_flow_.close(cut, views(q_));
     divergence(grid_, std::as_const(*this).views(q_), dt, phi_.view());
+    cut_flow_.reopen(cut, views(q_));
   }
   {
     ScopedTimer timer(times_.pressure);
-    poisson_.solve(phi_.view(), phi_.view());
+    cut_pressure_.solve(cut, phi_.view(), kClosedTolerance);
   }
   ScopedTimer timer(times_.correction);
   boundaries_.fill_pressure(phi_.view(), views(q_), false);
+  cut_flow_.keep(cut, std::as_const(*this).views(u_star_));
   apply_correction(grid_, phi_.view(), dt, views(q_), views(u_star_), p_.view());
+  cut_flow_.correct(cut, phi_.view(), dt, views(q_), views(u_star_));
   boundaries_.prescribe_face_velocity(views(q_));
+  cut_flow_.extend(cut, views(u_star_), wall_turbulence());
   std::swap(u_, u_star_);
 }
 
 void Incompressible::advance(double time, double dt, SolidMask& solids) {
   const Real h = static_cast<Real>(dt);
+  CutCells& cut = solids.cut;
   convection_ = -1.0;
-  solids.begin_step();
-  for (const SolidCell& c : solids.cells) solid_(c.i, c.j, c.k) = c.weight;
+  move_displaced(cut_flow_.begin(cut, std::as_const(*this).views(u_)));
+  cut_pressure_.begin(cut);
   smoothing_ = turbulence_ && dt > explicit_dt_;
   if (smoothing_) smoother_.prepare(0.5 * dt * largest_viscosity_);
 
-  book_boundaries(predict(0.0, 1.0, time, h), dt);
-  force(solids, kStageWeight);
+  book_boundaries(predict(0.0, 1.0, time, h, cut), dt);
+  cut_flow_.rub(cut, views(u_star_), wall_turbulence(), dt, kStageWeight * setup_.density);
+  cut_flow_.extend(cut, views(u_star_), wall_turbulence());
   {
     ScopedTimer timer(times_.boundaries);
     boundaries_.update(time + dt);
   }
-  correct(solids, h);
+  correct(cut, h);
   book_pressure(phi_.view(), kStageWeight, dt);
   std::swap(u_old_, u_star_);  // correct() left the velocity of the step's beginning there
 
-  book_boundaries(predict(0.5, 0.5, time + dt, h), dt);
+  book_boundaries(predict(0.5, 0.5, time + dt, h, cut), dt);
+  cut_flow_.rub(cut, views(u_star_), wall_turbulence(), 0.5 * dt, setup_.density);
   for (int n = 1; n < setup_.corrections; ++n) {
-    force(solids, 1.0);
-    correct(solids, h);
+    cut_flow_.extend(cut, views(u_star_), wall_turbulence());
+    correct(cut, h);
     book_pressure(phi_.view(), 1.0, dt);
     if (n + 1 < setup_.corrections) {
       std::swap(u_, u_star_);
       boundaries_.fill_pressure(p_.view(), views(q_), true);
     }
   }
-
-  ledger_.leak = 0;
-  for (const SolidCell& c : solids.cells)
-    if (c.weight == Real(1) && c.ratio == Real(0))
-      for (int d = 0; d < 3; ++d)
-        ledger_.leak = std::max(ledger_.leak, std::abs(double(u_[d](c.i, c.j, c.k) - c.solid[d])));
-  for (const SolidCell& c : solids.cells) solid_(c.i, c.j, c.k) = 0;
-  Vec3 impulse{0, 0, 0};
-  for (const auto& i : solids.impulse) impulse += Vec3(i[0], i[1], i[2]);
-  ledger_.impulse_on_solids -= impulse;
+  cut_flow_.press(cut, p_.view(), dt * setup_.density);
+  if (getenv("EJ_DEBUG")) {
+    double worst = 0; int at = -1;
+    for (std::size_t n = 0; n < cut.cells.size(); ++n) {
+      const CutCell& c = cut.cells[n];
+      const double v = std::abs(u_[0](c.i, c.j, c.k)) + std::abs(u_[1](c.i, c.j, c.k)) + std::abs(u_[2](c.i, c.j, c.k));
+      if (!(v <= worst)) worst = v, at = int(n);
+    }
+    int nc = 0, orphan = 0;
+    for (std::size_t n = 0; n < cut.cells.size(); ++n) { nc += cut.cells[n].carrier == int(n); orphan += cut.cells[n].carrier < 0; }
+    const CutCell& c = cut.cells[std::size_t(std::max(at, 0))];
+    fmt::print(stderr, "t {:.5g} dt {:.4g} it {} cells {} carriers {} orphans {} ghosts {} walls {} worst {:.4g} at {} ({} {} {}) fluid {:.3f} d {:.4g} carried {:.3f} members {} u {:.4g} {:.4g} {:.4g} p {:.4g}\n", time, dt,
+      cut_pressure_.iterations(), cut.cells.size(), nc, orphan, cut.ghosts.size(), cut.walls.size(), worst, at, c.i, c.j, c.k, c.fluid, c.distance, c.carried, c.members, u_[0](c.i,c.j,c.k), u_[1](c.i,c.j,c.k), u_[2](c.i,c.j,c.k), p_(c.i,c.j,c.k));
+  }
+  extend_to_ghosts(cut, p_.view(), ghost_values_);
+  for (std::size_t w = 0; w < cut.walls.size(); ++w)
+    ledger_.impulse_on_solids += cut.pressure_impulse[w] + cut.friction_impulse[w];
 
   if (turbulence_) {
     ScopedTimer timer(times_.turbulence);
     boundaries_.fill_velocity(views(u_), views(q_));
-    turbulence_->advance(boundaries_, std::as_const(*this).views(u_), views(q_), solids, h,
+    turbulence_->advance(boundaries_, std::as_const(*this).views(u_), views(q_), cut, h,
                          smoothing_ ? &smoother_ : nullptr);
   }
 }
@@ -244,7 +248,7 @@ void Incompressible::book_pressure(ConstFieldView p, double weight, double dt) {
 }
 
 std::vector<Field*> Incompressible::state() {
-  std::vector<Field*> all{&u_[0], &u_[1], &u_[2], &q_[0], &q_[1], &q_[2], &p_};
+  std::vector<Field*> all{&u_[0], &u_[1], &u_[2], &q_[0], &q_[1], &q_[2], &p_, &cut_flow_.carried_field()};
   if (turbulence_)
     for (Field* f : turbulence_->state()) all.push_back(f);
   return all;

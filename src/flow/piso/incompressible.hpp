@@ -5,6 +5,8 @@
 #include <optional>
 
 #include "flow/boundary.hpp"
+#include "flow/piso/cut_flow.hpp"
+#include "flow/piso/cut_pressure.hpp"
 #include "flow/piso/increment_smoother.hpp"
 #include "flow/piso/momentum.hpp"
 #include "flow/poisson/fast_diagonal.hpp"
@@ -37,7 +39,9 @@ struct FlowLedger {
   double mass_through_boundaries = 0;         ///< kg since construction, net, positive into the box
   double mass_in = 0;                         ///< kg since construction, what came in
   Vec3 impulse_on_solids{0, 0, 0};            ///< N s
-  double leak = 0;  ///< largest |u - solid| in a fully forced cell after the last step, m/s
+  /// N s, what moving solids take from and add to the fluid in the box by changing its volume cell by cell: the error
+  /// of their geometry in time, but for what the first step takes out where solids stand.
+  Vec3 displaced{0, 0, 0};
 };
 
 /// Incompressible flow by PISO (Issa 1986) on a collocated graded grid. One step:
@@ -48,9 +52,8 @@ struct FlowLedger {
 ///   velocity
 ///             u'  = project(force(u**))                 second pressure correction (more: repeated here)
 ///
-/// which is Heun's method: second order in time, stable to a Courant number of 1. Solids are forced before
-/// each correction; pressure is incremental, so that whatever leaks through a solid in one correction is what
-/// the pressure changed in that step, and vanishes as the flow settles.
+/// which is Heun's method: second order in time, stable to a Courant number of 1. Solids cut cells (cut_flow.hpp): the
+/// corrections know the open part of every face, so that nothing ever passes a surface.
 class Incompressible {
  public:
   Incompressible(const Grid& grid, std::array<Boundary, 6> boundaries, const IncompressibleSetup& setup);
@@ -73,7 +76,7 @@ class Incompressible {
   const IncompressibleSetup& setup() const { return setup_; }
   const Grid& grid() const { return grid_; }
 
-  double largest_divergence() const;
+  double largest_divergence(const CutCells& cut);
   Vec3 momentum() const;  ///< kg m/s in the box (axisymmetric: per radian)
   double kinetic_energy() const;
   const FlowTimes& times() const { return times_; }
@@ -87,10 +90,10 @@ class Incompressible {
   std::vector<Field*> state();
 
  private:
-  BoundaryFlow predict(double a, double b, double time, Real dt);
-  void force(SolidMask& solids, double weight);
-  void meet_solids(const SolidMask& solids);
-  void correct(const SolidMask& solids, Real dt);
+  BoundaryFlow predict(double a, double b, double time, Real dt, CutCells& cut);
+  void move_displaced(const Vec3& momentum) { ledger_.displaced += setup_.density * momentum; }
+  WallTurbulence wall_turbulence() const;
+  void correct(const CutCells& cut, Real dt);
   void book_boundaries(const BoundaryFlow& through, double dt);
   void book_pressure(ConstFieldView p, double weight, double dt);
   void evaluate_source(double time);
@@ -101,15 +104,17 @@ class Incompressible {
   IncompressibleSetup setup_;
   Boundaries boundaries_;
   FastDiagonalPoisson poisson_;
+  CutFlow cut_flow_;
+  CutPressure cut_pressure_;
   std::unique_ptr<TwoEquation> turbulence_;
   std::array<Field, 3> u_, u_old_, u_star_, q_, source_;
   Field p_, phi_;
-  Field solid_;  // forcing weight of every cell during a step, else zero
   IncrementSmoother smoother_;
   bool smoothing_ = false;
   double explicit_dt_ = 1e300, largest_viscosity_ = 0;  // of the last stable_dt()
   double convection_ = -1;                              // largest sum |u| / h, 1/s; negative: not known
   std::vector<BoundaryFlow> boundary_sums_;             // scratch
+  std::vector<Real> ghost_values_;                      // scratch
   double box_volume_ = 0;
   FlowTimes times_;
   FlowLedger ledger_;

@@ -68,14 +68,19 @@ double Incompressible::courant(double dt) const {
   return dt * double(reduce_max(grid_.range(), [=](int i, int j, int k) { return r.convection(i, j, k); }));
 }
 
-double Incompressible::largest_divergence() const { return ejecta::largest_divergence(grid_, views(q_)); }
+double Incompressible::largest_divergence(const CutCells& cut) {
+  cut_flow_.close(cut, views(q_));
+  const double largest = ejecta::largest_divergence(grid_, std::as_const(*this).views(q_));
+  cut_flow_.reopen(cut, views(q_));
+  return largest;
+}
 
 Vec3 Incompressible::momentum() const {
   const Metrics m[3] = {grid_.metrics(0), grid_.metrics(1), grid_.metrics(2)};
   Vec3 sum;
   for (int c = 0; c < 3; ++c)
-    sum[c] = setup_.density * reduce_sum(grid_.range(), [=, u = u_[c].view()](int i, int j, int k) {
-               return double(u(i, j, k)) * double(m[0].volume[i]) * double(m[1].volume[j]) *
+    sum[c] = setup_.density * reduce_sum(grid_.range(), [=, u = u_[c].view(), part = cut_flow_.carried()](int i, int j, int k) {
+               return double(part(i, j, k)) * double(u(i, j, k)) * double(m[0].volume[i]) * double(m[1].volume[j]) *
                       double(m[2].volume[k]);
              });
   return sum;
@@ -84,9 +89,10 @@ Vec3 Incompressible::momentum() const {
 double Incompressible::kinetic_energy() const {
   const Metrics m[3] = {grid_.metrics(0), grid_.metrics(1), grid_.metrics(2)};
   const std::array<ConstFieldView, 3> u = views(u_);
+  const ConstFieldView part = cut_flow_.carried();
   return 0.5 * setup_.density * reduce_sum(grid_.range(), [=](int i, int j, int k) {
            const double x = u[0](i, j, k), y = u[1](i, j, k), z = u[2](i, j, k);
-           return (x * x + y * y + z * z) * double(m[0].volume[i]) * double(m[1].volume[j]) *
+           return double(part(i, j, k)) * (x * x + y * y + z * z) * double(m[0].volume[i]) * double(m[1].volume[j]) *
                   double(m[2].volume[k]);
          });
 }

@@ -144,6 +144,34 @@ BoundaryFlow predict(const Grid& grid, const MomentumTerms& t, std::vector<Bound
 
 }  // namespace
 
+/// As MomentumFlux, for one face.
+FaceMomentum momentum_at_face(const Grid& grid, const MomentumTerms& t, int d, int i, int j, int k) {
+  const Metrics m[3] = {grid.metrics(0), grid.metrics(1), grid.metrics(2)};
+  const int at[3] = {i, j, k};
+  const std::ptrdiff_t s = stride(t.u[0], d);
+  const FaceMetrics f = face_metrics(m[d], at[d]);
+  const Real v = t.face_velocity[static_cast<std::size_t>(d)](i, j, k);
+  Real viscosity = t.viscosity;
+  if (t.eddy_viscosity.origin) {
+    const Real* eddy = &t.eddy_viscosity(i, j, k);
+    viscosity += f.weight * eddy[-s] + (Real(1) - f.weight) * eddy[0];
+  }
+  const Real* normal = &t.u[static_cast<std::size_t>(d)](i, j, k);
+  FaceMomentum out;
+  for (int c = 0; c < 3; ++c) {
+    const Real* p = &t.u[static_cast<std::size_t>(c)](i, j, k);
+    out.carried[static_cast<std::size_t>(c)] = upwind_value(v, p[-2 * s], p[-s], p[0], p[s], f);
+    Real strain = (p[0] - p[-s]) * f.inv_here;
+    if (t.eddy_viscosity.origin) {
+      const std::ptrdiff_t step = stride(t.u[0], c);
+      const Real low = m[c].inv_span[c == d ? at[c] - 1 : at[c]], high = m[c].inv_span[at[c]];
+      strain += f.weight * derivative(normal - s, step, low) + (Real(1) - f.weight) * derivative(normal, step, high);
+    }
+    out.stress[static_cast<std::size_t>(c)] = viscosity * strain;
+  }
+  return out;
+}
+
 Vec3 boundary_pressure(const Grid& grid, ConstFieldView p) {
   const Metrics m[3] = {grid.metrics(0), grid.metrics(1), grid.metrics(2)};
   Vec3 force{0, 0, 0};

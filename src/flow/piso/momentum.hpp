@@ -34,6 +34,13 @@ struct BoundaryFlow {
   double volume_in = 0;    ///< m3/s
 };
 
+/// What passes a face along d, of every component: the value carried by the flow through it, m/s, and the viscous
+/// stress over density, m2/s2. The lower face of cell (i, j, k).
+struct FaceMomentum {
+  std::array<Real, 3> carried, stress;
+};
+FaceMomentum momentum_at_face(const Grid& grid, const MomentumTerms& terms, int d, int i, int j, int k);
+
 /// Computes terms.out and returns what crossed the boundaries. `scratch` has room for nz + 2 ny entries.
 BoundaryFlow predict_momentum(const Grid& grid, const MomentumTerms& terms,
                               std::vector<BoundaryFlow>& scratch);

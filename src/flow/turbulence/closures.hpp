@@ -92,11 +92,4 @@ inline Real eddy_viscosity(Real k, Real omega, Real strain, Real f2) {
 }
 }  // namespace k_omega_sst
 
-/// Law of the wall: eddy viscosity on a smooth wall whose first centre lies y+ away, over nu (Spalding's two
-/// layers joined at y+ = 11.53).
-inline Real wall_eddy_viscosity(Real y_plus) {
-  constexpr Real kappa = Real(0.41), e = Real(9.8);
-  return y_plus > Real(11.53) ? y_plus * kappa / std::log(e * y_plus) - Real(1) : Real(0);
-}
-
 }  // namespace ejecta

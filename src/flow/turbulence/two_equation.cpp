@@ -5,38 +5,12 @@
 #include "flow/stencil.hpp"
 #include "flow/sweep.hpp"
 #include "flow/turbulence/closures.hpp"
+#include "flow/turbulence/gradient.hpp"
+#include "flow/turbulence/sources.hpp"
+#include "flow/turbulence/wall_law.hpp"
 
 namespace ejecta {
 namespace {
-
-/// Rows of the three velocities around (., j, k), with the spans of their central differences.
-struct GradientRow {
-  const Real *x, *y, *z, *span_x, *radius;
-  std::ptrdiff_t sy, sz;
-  Real span_y, span_z;
-
-  EJECTA_KERNEL VelocityGradient operator()(int i) const {
-    const Real sx = span_x[i];
-    VelocityGradient v{
-        derivative(x + i, 1, sx), derivative(x + i, sy, span_y), derivative(x + i, sz, span_z),
-        derivative(y + i, 1, sx), derivative(y + i, sy, span_y), derivative(y + i, sz, span_z),
-        derivative(z + i, 1, sx), derivative(z + i, sy, span_y), derivative(z + i, sz, span_z)};
-    if (radius) v.yy = x[i] / radius[i];  // hoop strain u_r / r
-    return v;
-  }
-};
-
-GradientRow gradient_row(const Grid& grid, const std::array<ConstFieldView, 3>& u, int j, int k) {
-  return {u[0].row(j, k),
-          u[1].row(j, k),
-          u[2].row(j, k),
-          grid.metrics(0).inv_span,
-          grid.axisymmetric() ? grid.metrics(0).centre : nullptr,
-          u[0].sy,
-          u[0].sz,
-          grid.metrics(1).inv_span[j],
-          grid.metrics(2).inv_span[k]};
-}
 
 /// grad k . grad omega / omega along row (., j, k). omega of each direction is the mean of the neighbours
 /// that make the difference: where it jumps by orders of magnitude, at the edge of a starting jet, the
@@ -139,32 +113,13 @@ void transport(const Grid& grid, const ScalarFlux<kSst>& face, const std::array<
             const Real strain2 = strain_squared(v);
             const Real by_volume = dt * inv_volume[i] * inv_jk;
             const Real k_carried = k0 - by_volume * b0[i], s_carried = s0 - by_volume * b1[i];
-            Real k1, s1;
+            SourcePoint p{k0, s0, k_carried, s_carried, strain2, nut * strain2, nut, Real(0), Real(0), Real(0)};
             if constexpr (kSst) {
-              using namespace k_omega_sst;
-              const Real f1 = blending[i], beta = blend(f1, kBeta1, kBeta2),
-                         most = Real(20) * kBetaStar * k0 * s0;
-              const Real cross = (Real(1) - f1) * Real(2) * kSigmaW2 * product(i);
-              const Real gain =
-                  gamma(f1) * std::min(strain2, most / std::max(nut, Real(1e-12))) + std::max(cross, Real(0));
-              k1 = (k_carried + dt * std::min(nut * strain2, most)) / (Real(1) + dt * kBetaStar * s0);
-              s1 = (s_carried + dt * gain) / (Real(1) + dt * (beta * s0 + std::max(-cross, Real(0)) / s0));
-            } else {
-              using namespace k_epsilon;
-              const Real longest = longest_time(std::sqrt(strain2));
-              const Real rate = s0 / k0, own_rate = std::max(rate, Real(1) / longest),
-                         produced = nut * strain2;
-              Real gain = kC1 * produced, loss = kC2;
-              if constexpr (kRound) {
-                const Real pope = kC3 * pope_chi(k0, s0, vortex_stretching(v), longest);
-                gain += std::max(pope, Real(0)) * s0;
-                loss += std::max(-pope, Real(0));
-              }
-              k1 = (k_carried + dt * produced) / (Real(1) + dt * rate);
-              s1 = (s_carried + dt * own_rate * gain) / (Real(1) + dt * loss * own_rate);
+              p.f1 = blending[i];
+              p.gradients = product(i);
             }
-            k1 = std::max(k1, kMinimalK);
-            s1 = std::max(s1, kMinimalSecond);
+            if constexpr (kRound) p.stretching = vortex_stretching(v);
+            const auto [k1, s1] = advance_sources<kSst, kRound>(p, dt);
             out_k[i] = unfinished ? k1 - k0 : k1;
             out_second[i] = unfinished ? s1 - s0 : s1;
             const Real rate_of_strain = std::sqrt(strain2), kn = unfinished ? k0 : k1,
@@ -244,28 +199,21 @@ void TwoEquation::apply_walls() {
     const auto at = [&](Field& f, int a, int bb, int along) -> Real& {
       return d == 0 ? f(along, a, bb) : d == 1 ? f(bb, along, a) : f(a, bb, along);
     };
-    constexpr Real kappa = Real(0.41), quarter = Real(0.5477226);  // 0.09^(1/4)
     for_each_index(nb, [&](int bb) {
       for (int a = 0; a < na; ++a) {
-        const Real k = at(k_, a, bb, cell), friction = quarter * std::sqrt(k);
-        const Real y_plus = friction * y / nu_;
-        const Real on_wall = nu_ * wall_eddy_viscosity(y_plus);
+        const Real k = at(k_, a, bb, cell);
+        const Real y_plus = wall_law::kQuarterCmu * std::sqrt(k) * y / nu_;
+        const Real on_wall = nu_ * (y_plus / wall_law::u_plus(y_plus, Real(0)) - Real(1));
         at(nut_, a, bb, ghost) = Real(2) * on_wall - at(nut_, a, bb, cell);
-        if (model_ == TwoEquationModel::k_epsilon) {
-          at(second_, a, bb, cell) =
-              std::max(friction * friction * friction / (kappa * y), Real(2) * nu_ * k / (y * y));
-        } else {
-          const Real viscous = Real(6) * nu_ / (k_omega_sst::kBeta1 * y * y),
-                     log = friction / (Real(0.3) * kappa * y);
-          at(second_, a, bb, cell) = std::sqrt(viscous * viscous + log * log);
-        }
+        at(second_, a, bb, cell) = model_ == TwoEquationModel::k_epsilon ? wall_law::dissipation(k, y, nu_)
+                                                                         : wall_law::specific_dissipation(k, y, nu_);
       }
     });
   }
 }
 
 void TwoEquation::advance(const Boundaries& b, const std::array<ConstFieldView, 3>& u,
-                          const std::array<FieldView, 3>& q, const SolidMask& solids, Real dt,
+                          const std::array<FieldView, 3>& q, const CutCells& cut, Real dt,
                           const IncrementSmoother* smoother) {
   if (wall_distance_[0].empty()) measure_walls(b);
   b.fill_turbulence(k_.view(), second_.view(), q);
@@ -285,6 +233,7 @@ void TwoEquation::advance(const Boundaries& b, const std::array<ConstFieldView, 
   if (model_ == TwoEquationModel::k_omega_sst) run(std::true_type{}, std::false_type{});
   else if (round_jet_) run(std::false_type{}, std::true_type{});
   else run(std::false_type{}, std::false_type{});
+  advance_cut_cells(cut, u, q, dt, smoother != nullptr);
   if (smoother) {
     smoother->apply(k_new_.view(), {k_.view(), Real(1), k_.view(), Real(0), kMinimalK});
     smoother->apply(second_new_.view(), {second_.view(), Real(1), second_.view(), Real(0), kMinimalSecond});
@@ -293,12 +242,8 @@ void TwoEquation::advance(const Boundaries& b, const std::array<ConstFieldView, 
   std::swap(second_, second_new_);
   std::swap(nut_, nut_new_);
   std::swap(f1_, f1_new_);
-  const FieldView nut = nut_.view();
-  for_each_index(static_cast<int>(solids.cells.size()), [&](int n) {  // no eddies inside a solid
-    const SolidCell& c = solids.cells[static_cast<std::size_t>(n)];
-    nut(c.i, c.j, c.k) *= Real(1) - c.weight;
-  });
-  b.fill_zero_gradient(nut);
+  finish_cut_cells(cut);
+  b.fill_zero_gradient(nut_.view());
   if (model_ == TwoEquationModel::k_omega_sst) b.fill_zero_gradient(f1_.view());
   apply_walls();
 }

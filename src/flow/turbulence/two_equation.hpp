@@ -4,7 +4,7 @@
 
 #include "flow/boundary.hpp"
 #include "flow/piso/increment_smoother.hpp"
-#include "flow/solid_mask.hpp"
+#include "flow/cut_cells.hpp"
 #include "grid/grid.hpp"
 
 namespace ejecta {
@@ -23,7 +23,7 @@ class TwoEquation {
 
   /// One step; u and q are the velocities at its end, with filled ghosts. dt = 0 only sets nu_t.
   void advance(const Boundaries& b, const std::array<ConstFieldView, 3>& u, const std::array<FieldView, 3>& q,
-               const SolidMask& solids, Real dt, const IncrementSmoother* smoother = nullptr);
+               const CutCells& cut, Real dt, const IncrementSmoother* smoother = nullptr);
 
   ConstFieldView eddy_viscosity() const { return nut_.view(); }
   const Field& k() const { return k_; }
@@ -33,6 +33,10 @@ class TwoEquation {
 
  private:
   void apply_walls();
+  /// Cut cells: what passes their open faces, and walls with the law of the wall.
+  void advance_cut_cells(const CutCells& cut, const std::array<ConstFieldView, 3>& u,
+                         const std::array<FieldView, 3>& q, Real dt, bool increments);
+  void finish_cut_cells(const CutCells& cut);
   void measure_walls(const Boundaries& b);
 
   const Grid& grid_;
@@ -41,14 +45,8 @@ class TwoEquation {
   Real nu_;
   Field k_, second_, nut_, f1_, k_new_, second_new_, nut_new_, f1_new_;
   std::array<bool, 6> is_wall_{};
+  std::vector<Real> ghost_values_;  // scratch
   WallDistance wall_distance_;  // to the nearest wall normal to each axis, m
 };
-
-/// nu_t / nu is limited to this (a jet of a sorter has about 1500), so that the ambient's arbitrary epsilon
-/// cannot set the time step.
-inline constexpr Real kLargestViscosityRatio = Real(1e4);
-
-/// Floors that keep still air still: far below any turbulence that matters.
-inline constexpr Real kMinimalK = Real(1e-8), kMinimalSecond = Real(1e-8);
 
 }  // namespace ejecta

@@ -1,0 +1,75 @@
+#pragma once
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "flow/cut_cells.hpp"
+#include "flow/stencil.hpp"
+
+/// What every operator of cut cells asks of them.
+namespace ejecta {
+
+/// Area of the lower d-face of cell `at`, m2.
+inline Real face_area_of(const Grid& grid, int d, const std::array<int, 3>& at) {
+  const Metrics m[3] = {grid.metrics(0), grid.metrics(1), grid.metrics(2)};
+  return d == 0   ? face_area<0>(m, at[0], at[1], at[2])
+         : d == 1 ? face_area<1>(m, at[0], at[1], at[2])
+                  : face_area<2>(m, at[0], at[1], at[2]);
+}
+
+/// visit(member, d, face, neighbour, sign, open part, whole area) for the open faces of a carrier and of the cells it
+/// carries; sign: +1 where the face is the member's upper one.
+template <class Visit>
+void for_each_open_face(const Grid& grid, const CutCells& cut, const CutCell& carrier, const Visit& visit) {
+  for (int n = carrier.first_member; n < carrier.first_member + carrier.members; ++n) {
+    const CutCell& c = cut.cells[static_cast<std::size_t>(cut.members[static_cast<std::size_t>(n)])];
+    for (int side = 0; side < 6; ++side) {
+      const int d = side / 2, up = side % 2;
+      if (!grid.active(d)) continue;
+      std::array<int, 3> face{c.i, c.j, c.k}, beyond = face;
+      face[static_cast<std::size_t>(d)] += up;
+      beyond[static_cast<std::size_t>(d)] += up ? 1 : -1;
+      const Real open = Real(1) - cut.closed[static_cast<std::size_t>(d)](face[0], face[1], face[2]);
+      if (open > Real(0)) visit(c, d, face, beyond, up ? Real(1) : Real(-1), open, face_area_of(grid, d, face));
+    }
+  }
+}
+
+/// visit(wall, its index) for the walls of a carrier and of the cells it carries.
+template <class Visit>
+void for_each_wall(const CutCells& cut, const CutCell& carrier, const Visit& visit) {
+  for (int n = carrier.first_member; n < carrier.first_member + carrier.members; ++n) {
+    const CutCell& c = cut.cells[static_cast<std::size_t>(cut.members[static_cast<std::size_t>(n)])];
+    for (int w = c.first_wall; w < c.first_wall + c.walls; ++w) visit(cut.walls[static_cast<std::size_t>(w)], w);
+  }
+}
+
+inline Real dot(const std::array<Real, 3>& a, const std::array<Real, 3>& b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+inline Real norm(const std::array<Real, 3>& v) { return std::sqrt(dot(v, v)); }
+
+/// Width of a cell along its normal, m.
+inline Real width_along_normal(const Grid& grid, const CutCell& c) {
+  const int at[3] = {c.i, c.j, c.k};
+  Real width = 0;
+  for (std::size_t d = 0; d < 3; ++d)
+    if (grid.active(int(d))) width += std::abs(c.normal[d]) * grid.metrics(int(d)).width[at[d]];
+  return width > Real(0) ? width : grid.metrics(0).width[c.i];
+}
+
+/// Distance from the wall at which the velocity of a carrier stands in the law of the wall, m: being that of its fluid
+/// as a whole, it stands for the middle between the wall and the far side.
+inline Real wall_distance(const Grid& grid, const CutCell& carrier) {
+  return Real(0.5) * (std::max(carrier.distance, Real(0)) + Real(0.5) * width_along_normal(grid, carrier));
+}
+
+/// The part of u - wall.velocity along the wall, m/s.
+inline std::array<Real, 3> velocity_along(const CutWall& wall, const std::array<Real, 3>& u) {
+  std::array<Real, 3> w{u[0] - wall.velocity[0], u[1] - wall.velocity[1], u[2] - wall.velocity[2]};
+  const Real through = dot(w, wall.area) / std::max(dot(wall.area, wall.area), Real(1e-30));
+  for (std::size_t e = 0; e < 3; ++e) w[e] -= through * wall.area[e];
+  return w;
+}
+
+}  // namespace ejecta

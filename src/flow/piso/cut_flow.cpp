@@ -1,0 +1,272 @@
+#include "flow/piso/cut_flow.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "flow/cut_geometry.hpp"
+#include "flow/cut_ghosts.hpp"
+#include "flow/turbulence/wall_law.hpp"
+
+namespace ejecta {
+namespace {
+
+using Cell = std::array<int, 3>;
+using Triple = std::array<Real, 3>;
+
+/// Cell Reynolds number (speed along the wall times distance over viscosity) from which on a laminar layer is
+/// thinner than the cells that should show it: the stencils then see the flow slip, the wall's friction apart.
+constexpr Real kResolvedLayer = Real(100);
+/// Nearest a centre counts to its wall, parts of a cell: friction there is implicit anyway.
+constexpr Real kNearest = Real(0.05);
+
+/// Closed faces move with their solid.
+void hold_closed(const CutCells& cut, const std::array<FieldView, 3>& q) {
+  for_each_index(static_cast<int>(cut.faces.size()), [&](int n) {
+    const CutFace& f = cut.faces[static_cast<std::size_t>(n)];
+    if (f.closed >= Real(1)) q[static_cast<std::size_t>(f.d)](f.i, f.j, f.k) = f.velocity;
+  });
+}
+
+}  // namespace
+
+CutFlow::CutFlow(const Grid& grid, double viscosity)
+    : grid_(grid), nu_(static_cast<Real>(viscosity)), carried_(grid.make_field()) {
+  carried_.fill(Real(1));
+}
+
+Vec3 CutFlow::begin(const CutCells& cut, const std::array<ConstFieldView, 3>& u) {
+  Vec3 sum{0, 0, 0};
+  const auto add = [&](int i, int j, int k, double sign) {
+    const double part = sign * double(carried_(i, j, k)) * grid_.volume(i, j, k);
+    sum += part * Vec3(u[0](i, j, k), u[1](i, j, k), u[2](i, j, k));
+  };
+  // Cells of before and of now are counted before and after; one in both counts twice each way.
+  for (const Cell& c : touched_) add(c[0], c[1], c[2], -1.0);
+  for (const Cell& c : touched_) carried_(c[0], c[1], c[2]) = Real(1);
+  for (const Cell& c : touched_) add(c[0], c[1], c[2], 1.0);
+  touched_.clear();
+  const auto touch = [&](int i, int j, int k, Real carried) {
+    add(i, j, k, -1.0);
+    carried_(i, j, k) = carried;
+    add(i, j, k, 1.0);
+    touched_.push_back({i, j, k});
+  };
+  for (std::size_t n = 0; n < cut.cells.size(); ++n) {
+    const CutCell& c = cut.cells[n];
+    touch(c.i, c.j, c.k, c.carrier == static_cast<int>(n) ? c.carried : Real(0));
+  }
+  for (const GhostCell& g : cut.ghosts)
+    if (cut.index(g.i, g.j, g.k) < 0) touch(g.i, g.j, g.k, Real(0));
+  gradient_.resize(cut.cells.size());
+  kept_.resize(cut.cells.size());
+  sums_.resize(cut.cells.size());
+  values_.resize(cut.ghosts.size());
+  return sum;
+}
+
+std::array<Real, 3> CutFlow::gradient(const CutCells& cut, const CutCell& carrier, ConstFieldView p) const {
+  Triple g{0, 0, 0};
+  for_each_open_face(grid_, cut, carrier,
+                     [&](const CutCell& c, int d, const Cell& face, const Cell& beyond, Real sign, Real open, Real area) {
+                       const std::size_t s = static_cast<std::size_t>(d);
+                       const Metrics m = grid_.metrics(d);
+                       const Real lower = m.weight[face[s]], weight = sign > 0 ? Real(1) - lower : lower;
+                       g[s] += sign * open * area * weight *
+                               (p(beyond[0], beyond[1], beyond[2]) - p(c.i, c.j, c.k));
+                     });
+  const Real volume = carrier.carried * static_cast<Real>(grid_.volume(carrier.i, carrier.j, carrier.k));
+  for (Real& v : g) v /= volume;
+  return g;
+}
+
+Vec3 CutFlow::predict(const CutCells& cut, const MomentumTerms& t) {
+  for_each_index(static_cast<int>(cut.cells.size()), [&](int n) {
+    const CutCell& c = cut.cells[static_cast<std::size_t>(n)];
+    Vec3& displaced = sums_[static_cast<std::size_t>(n)];
+    displaced = Vec3::Zero();
+    if (c.carrier != n) return;
+    const Triple here{t.u[0](c.i, c.j, c.k), t.u[1](c.i, c.j, c.k), t.u[2](c.i, c.j, c.k)};
+    Triple balance{0, 0, 0};
+    double outflow = 0.0;
+    for_each_open_face(grid_, cut, c,
+                       [&](const CutCell&, int d, const Cell& f, const Cell&, Real sign, Real open, Real area) {
+                         const FaceMomentum at = momentum_at_face(grid_, t, d, f[0], f[1], f[2]);
+                         const Real through = sign * area * open * t.face_velocity[static_cast<std::size_t>(d)](f[0], f[1], f[2]);
+                         outflow += double(through);
+                         for (std::size_t e = 0; e < 3; ++e)
+                           balance[e] += through * (at.carried[e] - here[e]) - sign * open * area * at.stress[e];
+                       });
+    const Triple g = gradient(cut, c, t.pressure);
+    gradient_[static_cast<std::size_t>(n)] = g;
+    const Real volume = c.carried * static_cast<Real>(grid_.volume(c.i, c.j, c.k)), step = t.b * t.dt;
+    for (std::size_t e = 0; e < 3; ++e) {
+      Real rate = t.acceleration[e] - balance[e] / volume - g[e];
+      if (t.source[e].origin) rate += t.source[e](c.i, c.j, c.k);
+      const Real base = t.increment_only ? Real(0) : t.a * t.old[e](c.i, c.j, c.k) + t.b * here[e];
+      t.out[e](c.i, c.j, c.k) = base + step * rate;
+      displaced[int(e)] = outflow * double(here[e]);
+    }
+  });
+  for_each_index(static_cast<int>(cut.ghosts.size()), [&](int n) {
+    const GhostCell& g = cut.ghosts[static_cast<std::size_t>(n)];
+    for (std::size_t e = 0; e < 3; ++e)
+      t.out[e](g.i, g.j, g.k) = t.increment_only ? Real(0) : t.u[e](g.i, g.j, g.k);
+  });
+  Vec3 total{0, 0, 0};
+  for (const Vec3& s : sums_) total += s;
+  return total;
+}
+
+void CutFlow::rub(CutCells& cut, const std::array<FieldView, 3>& u, const WallTurbulence& turbulence, double dt,
+                  double density_weight) const {
+  for_each_index(static_cast<int>(cut.cells.size()), [&](int n) {
+    const CutCell& c = cut.cells[static_cast<std::size_t>(n)];
+    if (c.carrier != n) return;
+    const Real volume = c.carried * static_cast<Real>(grid_.volume(c.i, c.j, c.k));
+    Triple v{u[0](c.i, c.j, c.k), u[1](c.i, c.j, c.k), u[2](c.i, c.j, c.k)};
+    const bool turbulent = turbulence.present();
+    const Real y = turbulent ? wall_distance(grid_, c) : std::max(c.distance, kNearest * width_along_normal(grid_, c));
+    for_each_wall(cut, c, [&](const CutWall& wall, int w) {
+      const Real area = norm(wall.area);
+      if (area <= Real(0)) return;
+      Triple moved{v[0] - wall.velocity[0], v[1] - wall.velocity[1], v[2] - wall.velocity[2]};
+      if (turbulent) moved = velocity_along(wall, v);
+      const Real conductance = turbulent ? wall_law::conductance(norm(moved), y, nu_,
+                                                                 std::max(turbulence.k(c.i, c.j, c.k), Real(0)),
+                                                                 wall.roughness)
+                                         : nu_ / y;
+      const Real rate = static_cast<Real>(dt) * area * conductance / volume, part = rate / (Real(1) + rate);
+      for (std::size_t e = 0; e < 3; ++e) {
+        const Real change = part * moved[e];
+        v[e] -= change;
+        cut.friction_impulse[static_cast<std::size_t>(w)][int(e)] += density_weight * double(volume) * double(change);
+      }
+    });
+    for (std::size_t e = 0; e < 3; ++e) u[e](c.i, c.j, c.k) = v[e];
+  });
+}
+
+void CutFlow::extend(const CutCells& cut, const std::array<FieldView, 3>& u, const WallTurbulence& turbulence) {
+  for_each_index(static_cast<int>(cut.ghosts.size()), [&](int n) {
+    const GhostCell& g = cut.ghosts[static_cast<std::size_t>(n)];
+    Triple& value = values_[static_cast<std::size_t>(n)];
+    value = g.solid;
+    if (g.donors == 0) return;
+    const auto from = [&](ConstFieldView f) { return from_donors(g, f); };
+    Triple w{from(u[0]) - g.solid[0], from(u[1]) - g.solid[1], from(u[2]) - g.solid[2]};
+    const Real through = dot(w, g.normal);
+    Triple along;
+    for (std::size_t e = 0; e < 3; ++e) along[e] = w[e] - through * g.normal[e];
+    const Real speed = norm(along);
+    Real linear;  // 1: the profile from the image to the wall is linear; 0: the flow slips
+    if (turbulence.present()) {
+      const Real k = std::max(from(turbulence.k), Real(0)), eddy = from(turbulence.eddy_viscosity);
+      linear = std::min(wall_law::conductance(speed, g.image, nu_, k, 0) * g.image / (nu_ + eddy), Real(1));
+    } else {
+      const Real layer = speed * g.image / nu_ / kResolvedLayer;
+      linear = Real(1) / (Real(1) + layer * layer);
+    }
+    const Real tangential = Real(1) - linear * (Real(1) - g.ratio);
+    for (std::size_t e = 0; e < 3; ++e) value[e] += g.ratio * through * g.normal[e] + tangential * along[e];
+  });
+  for_each_index(static_cast<int>(cut.ghosts.size()), [&](int n) {
+    const GhostCell& g = cut.ghosts[static_cast<std::size_t>(n)];
+    for (std::size_t e = 0; e < 3; ++e) u[e](g.i, g.j, g.k) = values_[static_cast<std::size_t>(n)][e];
+  });
+}
+
+void CutFlow::face_velocities(const CutCells& cut, const std::array<ConstFieldView, 3>& u, ConstFieldView p, Real dt,
+                              const std::array<FieldView, 3>& q) {
+  for_each_index(static_cast<int>(cut.cells.size()), [&](int n) {
+    const CutCell& c = cut.cells[static_cast<std::size_t>(n)];
+    if (c.carrier == n) gradient_[static_cast<std::size_t>(n)] = gradient(cut, c, p);
+  });
+  // The pressure gradient that moved a cell; false where none did.
+  const auto gradient_at = [&](const Cell& c, int d, Real& value) {
+    const int index = cut.index(c[0], c[1], c[2]);
+    if (index == 0) {
+      const Real* at = &p(c[0], c[1], c[2]);
+      value = cell_gradient(at, stride(p, d), grid_.metrics(d), c[static_cast<std::size_t>(d)]);
+      return true;
+    }
+    if (index < 0) return false;
+    const int carrier = cut.cells[static_cast<std::size_t>(index - 1)].carrier;
+    if (carrier < 0) return false;
+    value = gradient_[static_cast<std::size_t>(carrier)][static_cast<std::size_t>(d)];
+    return true;
+  };
+  const auto set = [&](int d, const Cell& face) {
+    const std::size_t s = static_cast<std::size_t>(d);
+    if (face[s] <= 0 || face[s] >= grid_.n(d)) return;  // of the box
+    Cell low = face;
+    --low[s];
+    const Metrics m = grid_.metrics(d);
+    const Real w = m.weight[face[s]];
+    Real velocity = w * u[s](low[0], low[1], low[2]) + (Real(1) - w) * u[s](face[0], face[1], face[2]);
+    Real below = 0, above = 0;
+    if (gradient_at(low, d, below) && gradient_at(face, d, above))
+      velocity += dt * (w * below + (Real(1) - w) * above -
+                        (p(face[0], face[1], face[2]) - p(low[0], low[1], low[2])) * m.inv_distance[face[s]]);
+    q[s](face[0], face[1], face[2]) = velocity;
+  };
+  for_each_index(static_cast<int>(cut.cells.size()), [&](int n) {
+    const CutCell& c = cut.cells[static_cast<std::size_t>(n)];
+    for (int d = 0; d < 3; ++d) {
+      if (!grid_.active(d)) continue;
+      Cell face{c.i, c.j, c.k};
+      set(d, face);
+      const std::size_t s = static_cast<std::size_t>(d);
+      ++face[s];
+      // The cell above sets its lower face itself when it is cut.
+      if (face[s] < grid_.n(d) && cut.index(face[0], face[1], face[2]) <= 0) set(d, face);
+    }
+  });
+  hold_closed(cut, q);
+}
+
+void CutFlow::close(const CutCells& cut, const std::array<FieldView, 3>& q) {
+  open_velocity_.resize(cut.faces.size());
+  for_each_index(static_cast<int>(cut.faces.size()), [&](int n) {
+    const CutFace& f = cut.faces[static_cast<std::size_t>(n)];
+    Real& velocity = q[static_cast<std::size_t>(f.d)](f.i, f.j, f.k);
+    open_velocity_[static_cast<std::size_t>(n)] = velocity;
+    velocity += f.closed * (f.velocity - velocity);
+  });
+}
+
+void CutFlow::reopen(const CutCells& cut, const std::array<FieldView, 3>& q) const {
+  for_each_index(static_cast<int>(cut.faces.size()), [&](int n) {
+    const CutFace& f = cut.faces[static_cast<std::size_t>(n)];
+    q[static_cast<std::size_t>(f.d)](f.i, f.j, f.k) = open_velocity_[static_cast<std::size_t>(n)];
+  });
+}
+
+void CutFlow::keep(const CutCells& cut, const std::array<ConstFieldView, 3>& u) {
+  for_each_index(static_cast<int>(cut.cells.size()), [&](int n) {
+    const CutCell& c = cut.cells[static_cast<std::size_t>(n)];
+    for (std::size_t e = 0; e < 3; ++e) kept_[static_cast<std::size_t>(n)][e] = u[e](c.i, c.j, c.k);
+  });
+}
+
+void CutFlow::correct(const CutCells& cut, ConstFieldView phi, Real dt, const std::array<FieldView, 3>& q,
+                      const std::array<FieldView, 3>& u) {
+  hold_closed(cut, q);
+  for_each_index(static_cast<int>(cut.cells.size()), [&](int n) {
+    const CutCell& c = cut.cells[static_cast<std::size_t>(n)];
+    if (c.carrier != n) return;
+    const Triple g = gradient(cut, c, phi);
+    for (std::size_t e = 0; e < 3; ++e)
+      u[e](c.i, c.j, c.k) = kept_[static_cast<std::size_t>(n)][e] - dt * g[e];
+  });
+}
+
+void CutFlow::press(CutCells& cut, ConstFieldView p, double dt_density) const {
+  for_each_index(static_cast<int>(cut.walls.size()), [&](int n) {
+    const CutWall& w = cut.walls[static_cast<std::size_t>(n)];
+    const CutCell& c = cut.cells[static_cast<std::size_t>(w.cell)];
+    const double pressure = p(c.i, c.j, c.k);
+    cut.pressure_impulse[static_cast<std::size_t>(n)] += dt_density * pressure * Vec3(w.area[0], w.area[1], w.area[2]);
+  });
+}
+
+}  // namespace ejecta

@@ -1,0 +1,68 @@
+#pragma once
+#include <array>
+#include <vector>
+
+#include "flow/cut_cells.hpp"
+#include "flow/piso/momentum.hpp"
+#include "grid/grid.hpp"
+
+namespace ejecta {
+
+/// What turbulence there is for the law of the wall; origins null: laminar flow.
+struct WallTurbulence {
+  ConstFieldView k, eddy_viscosity;
+  bool present() const { return k.origin != nullptr; }
+};
+
+/// What a step does in cut cells after the kernels have treated the whole grid as fluid. A cell that keeps its
+/// momentum (a carrier) is balanced over the fluid of itself and of the small cells it carries:
+///
+///   V du/dt = -sum A_f [q (u_f - u) - nu_eff (grad u + grad u^T)] - sum A_f (p_f - p) - wall friction
+///
+/// A_f: open parts of faces. The form in u_f - u leaves alone what moves with its solid. The wall takes the pressure
+/// of its cell and the friction of the law of the wall: nothing else passes it.
+class CutFlow {
+ public:
+  CutFlow(const Grid& grid, double viscosity);
+
+  /// New cells: volumes of fluid, and the momentum over density (m4/s) that their change puts into the sums.
+  Vec3 begin(const CutCells& cut, const std::array<ConstFieldView, 3>& u);
+  /// Part of a cell's volume whose momentum it carries: 1 in plain fluid, 0 in solids.
+  ConstFieldView carried() const { return carried_.view(); }
+  Field& carried_field() { return carried_; }
+
+  /// Writes terms.out of cut cells; of ghosts it says that nothing changes. Returns the momentum over density that
+  /// the displaced fluid takes along, m4/s.
+  Vec3 predict(const CutCells& cut, const MomentumTerms& terms);
+  /// Friction of the walls over `dt`, implicit, counted `weight` times in cut.friction_impulse.
+  void rub(CutCells& cut, const std::array<FieldView, 3>& u, const WallTurbulence& turbulence, double dt,
+           double density_weight) const;
+  /// Ghosts take what the stencils should see.
+  void extend(const CutCells& cut, const std::array<FieldView, 3>& u, const WallTurbulence& turbulence);
+  /// q on the faces of cut cells, of what flows through their open parts; closed ones move with the solid.
+  void face_velocities(const CutCells& cut, const std::array<ConstFieldView, 3>& u_star, ConstFieldView p, Real dt,
+                       const std::array<FieldView, 3>& q);
+  /// Turns q into volume flow per whole area, the solid's through the closed part, and back.
+  void close(const CutCells& cut, const std::array<FieldView, 3>& q);
+  void reopen(const CutCells& cut, const std::array<FieldView, 3>& q) const;
+  /// Remembers u_star of cut cells, which the kernel of the correction would spoil.
+  void keep(const CutCells& cut, const std::array<ConstFieldView, 3>& u_star);
+  void correct(const CutCells& cut, ConstFieldView phi, Real dt, const std::array<FieldView, 3>& q,
+               const std::array<FieldView, 3>& u);
+  /// Adds dt density p A of every wall to cut.pressure_impulse.
+  void press(CutCells& cut, ConstFieldView p, double dt_density) const;
+
+ private:
+  std::array<Real, 3> gradient(const CutCells& cut, const CutCell& carrier, ConstFieldView p) const;
+
+  const Grid& grid_;
+  Real nu_;
+  Field carried_;
+  std::vector<std::array<int, 3>> touched_;           // cells whose carried_ is not 1
+  std::vector<std::array<Real, 3>> gradient_, kept_;  // of cut.cells
+  std::vector<std::array<Real, 3>> values_;           // scratch of extend
+  std::vector<Real> open_velocity_;                   // of cut.faces while they are closed
+  std::vector<Vec3> sums_;                            // scratch
+};
+
+}  // namespace ejecta

@@ -1,0 +1,127 @@
+#include "flow/piso/cut_pressure.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "flow/stencil.hpp"
+
+namespace ejecta {
+namespace {
+
+constexpr int kMostIterations = 60;
+
+}  // namespace
+
+CutPressure::CutPressure(const Grid& grid, FastDiagonalPoisson& whole, const std::array<PoissonBoundary, 6>& boundary)
+    : grid_(grid), whole_(whole), boundary_(boundary), work_(grid.make_field()), sources_(grid.make_field()) {}
+
+void CutPressure::begin(const CutCells& cut) {
+  const Metrics m[3] = {grid_.metrics(0), grid_.metrics(1), grid_.metrics(2)};
+  entries_.clear();
+  couplings_.clear();
+  for (const CutCell& c : cut.cells) entries_.push_back({c.i, c.j, c.k});
+  const int first_ghost = static_cast<int>(entries_.size());
+  for (const GhostCell& g : cut.ghosts)  // those of solids come first
+    if (cut.index(g.i, g.j, g.k) < 0) entries_.push_back({g.i, g.j, g.k});
+  const auto entry = [&](int i, int j, int k) {
+    const int index = cut.index(i, j, k);
+    return index > 0 ? index - 1 : first_ghost - 1 - index;
+  };
+  for (const CutFace& f : cut.faces) {
+    const int at[3] = {f.i, f.j, f.k};
+    const int n = grid_.n(f.d);
+    const Real area = f.d == 0   ? face_area<0>(m, f.i, f.j, f.k)
+                      : f.d == 1 ? face_area<1>(m, f.i, f.j, f.k)
+                                 : face_area<2>(m, f.i, f.j, f.k);
+    Coupling c{-1, -1, f.closed * area * m[f.d].inv_distance[at[f.d]]};
+    int below[3] = {f.i, f.j, f.k};
+    --below[f.d];
+    if (at[f.d] == 0 || at[f.d] == n) {
+      const PoissonBoundary kind = boundary_[static_cast<std::size_t>(2 * f.d + (at[f.d] == n))];
+      if (kind == PoissonBoundary::neumann || (kind == PoissonBoundary::periodic && at[f.d] == n)) continue;
+      if (kind == PoissonBoundary::periodic) {
+        below[f.d] = n - 1;
+      } else {
+        c.strength *= Real(2);
+        if (at[f.d] == 0) c.above = entry(f.i, f.j, f.k);
+        else c.below = entry(below[0], below[1], below[2]);
+        couplings_.push_back(c);
+        continue;
+      }
+    }
+    c.below = entry(below[0], below[1], below[2]);
+    c.above = entry(f.i, f.j, f.k);
+    couplings_.push_back(c);
+  }
+  for (auto* v : {&phi_, &closed_, &residual_, &z_, &direction_, &whole_direction_, &source_}) v->resize(entries_.size());
+}
+
+void CutPressure::through_closed(const std::vector<Real>& f, std::vector<Real>& out) {
+  std::fill(out.begin(), out.end(), Real(0));
+  for (const Coupling& c : couplings_) {
+    const Real below = c.below < 0 ? Real(0) : f[static_cast<std::size_t>(c.below)],
+               above = c.above < 0 ? Real(0) : f[static_cast<std::size_t>(c.above)];
+    const Real flow = c.strength * (above - below);
+    if (c.below >= 0) out[static_cast<std::size_t>(c.below)] += flow;
+    if (c.above >= 0) out[static_cast<std::size_t>(c.above)] -= flow;
+  }
+}
+
+void CutPressure::gather(ConstFieldView f, std::vector<Real>& out) const {
+  for (std::size_t n = 0; n < entries_.size(); ++n) out[n] = f(entries_[n].i, entries_[n].j, entries_[n].k);
+}
+
+double CutPressure::product(const std::vector<Real>& a, const std::vector<Real>& b) const {
+  double sum = 0.0;
+  for (std::size_t n = 0; n < a.size(); ++n) sum += double(a[n]) * double(b[n]);
+  return sum;
+}
+
+/// With L the operator of the whole grid and C what passes closed faces, (L - C) phi = rhs. Residuals and L times the
+/// directions vanish but on the entries, since L is inverted exactly.
+void CutPressure::solve(const CutCells& cut, FieldView phi, double tolerance) {
+  for (const GhostCell& g : cut.ghosts)
+    if (cut.index(g.i, g.j, g.k) < 0) phi(g.i, g.j, g.k) = 0;  // but for round-off it is
+  whole_.solve(phi, phi);
+  iterations_ = 0;
+  if (couplings_.empty()) return;
+  const FieldView sources = sources_.view(), work = work_.view();
+  const auto apply_inverse = [&](const std::vector<Real>& r, std::vector<Real>& out) {
+    for (std::size_t n = 0; n < entries_.size(); ++n) sources(entries_[n].i, entries_[n].j, entries_[n].k) = r[n];
+    whole_.solve(sources, work);
+    gather(work, out);
+  };
+  gather(phi, phi_);
+  through_closed(phi_, residual_);
+  std::fill(source_.begin(), source_.end(), Real(0));
+  // r = C phi, z = L^-1 r; steps along z, on which (L - C) is negative definite
+  double before = 0.0, first = 0.0;
+  for (int n = 0; n < kMostIterations; ++n) {
+    apply_inverse(residual_, z_);
+    const double now = -product(residual_, z_);
+    if (n == 0) first = now;
+    if (!(now > tolerance * tolerance * first) || !(now > 0.0)) break;
+    ++iterations_;
+    const Real beta = n == 0 ? Real(0) : static_cast<Real>(now / before);
+    for (std::size_t e = 0; e < z_.size(); ++e) {
+      direction_[e] = z_[e] + (n == 0 ? Real(0) : beta * direction_[e]);
+      whole_direction_[e] = residual_[e] + (n == 0 ? Real(0) : beta * whole_direction_[e]);
+    }
+    through_closed(direction_, closed_);
+    for (std::size_t e = 0; e < closed_.size(); ++e) closed_[e] = whole_direction_[e] - closed_[e];
+    const double curvature = -product(direction_, closed_);
+    if (!(curvature > 0.0)) break;
+    const Real alpha = static_cast<Real>(now / curvature);
+    for (std::size_t e = 0; e < z_.size(); ++e) {
+      source_[e] += alpha * whole_direction_[e];
+      residual_[e] -= alpha * closed_[e];
+    }
+    before = now;
+  }
+  for (std::size_t n = 0; n < entries_.size(); ++n) sources(entries_[n].i, entries_[n].j, entries_[n].k) = source_[n];
+  whole_.solve(sources, work);
+  for_each_cell(grid_.range(), [=](int i, int j, int k) { phi(i, j, k) += work(i, j, k); });
+  for (const Entry& e : entries_) sources(e.i, e.j, e.k) = 0;
+}
+
+}  // namespace ejecta
