@@ -40,6 +40,7 @@ CoupledModel::CoupledModel(const Case& c)
   loads_.resize(n);
   impulse_.assign(n, Vec3::Zero());
   force_sum_.assign(n, Vec3::Zero());
+  friction_sum_.assign(n, Vec3::Zero());
   torque_sum_.assign(n, Vec3::Zero());
   before_.resize(n);
   peak_speed_.assign(n, 0.0);
@@ -147,6 +148,7 @@ void CoupledModel::build_step() {
                        averaged_ += dt;
                        for (std::size_t b = 0; b < loads_.size(); ++b) {
                          force_sum_[b] += dt * loads_[b].force;
+                         friction_sum_[b] += dt * friction(b);
                          torque_sum_[b] += dt * loads_[b].torque;
                        }
                      }});
@@ -227,6 +229,14 @@ Vec3 CoupledModel::mean_force(std::size_t b) const {
   return averaged_ > 0.0 ? Vec3(force_sum_[b] / averaged_) : loads_[b].force;
 }
 
+Vec3 CoupledModel::friction(std::size_t b) const {
+  return air_ && coupling_ && b < coupling_->parts().size() ? coupling_->parts()[b].friction : Vec3(Vec3::Zero());
+}
+
+Vec3 CoupledModel::mean_friction(std::size_t b) const {
+  return averaged_ > 0.0 ? Vec3(friction_sum_[b] / averaged_) : friction(b);
+}
+
 Vec3 CoupledModel::mean_torque(std::size_t b) const {
   return averaged_ > 0.0 ? Vec3(torque_sum_[b] / averaged_) : loads_[b].torque;
 }
@@ -260,7 +270,7 @@ std::vector<output::OperatorTime> CoupledModel::operator_times() const {
 
 std::vector<std::vector<double>> CoupledModel::state_numbers() const {
   std::vector<double> own{averaged_, max_courant_, peak_energy_, double(flow_steps_), double(air_)};
-  for (const auto* list : {&impulse_, &start_velocity_, &force_sum_, &torque_sum_})
+  for (const auto* list : {&impulse_, &start_velocity_, &force_sum_, &friction_sum_, &torque_sum_})
     for (const Vec3& v : *list) own.insert(own.end(), {v.x(), v.y(), v.z()});
   own.insert(own.end(), peak_speed_.begin(), peak_speed_.end());
   for (const Load& l : loads_)
@@ -277,7 +287,7 @@ void CoupledModel::restore_numbers(const std::vector<std::vector<double>>& numbe
   for (double* v : {&averaged_, &max_courant_, &peak_energy_}) *v = own.number();
   flow_steps_ = static_cast<std::int64_t>(own.number());
   air_ = own.whole(0, 1) == 1;
-  for (auto* list : {&impulse_, &start_velocity_, &force_sum_, &torque_sum_})
+  for (auto* list : {&impulse_, &start_velocity_, &force_sum_, &friction_sum_, &torque_sum_})
     for (Vec3& v : *list) v = own.vec3();
   for (double& v : peak_speed_) v = own.number();
   for (Load& l : loads_) l.force = own.vec3(), l.torque = own.vec3();

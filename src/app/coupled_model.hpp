@@ -43,6 +43,9 @@ class CoupledModel {
   /// Mean force over the time since stream.average_from, N.
   Vec3 mean_force(std::size_t body) const;
   Vec3 mean_torque(std::size_t body) const;
+  /// What friction has in the force of the air: now, and in the mean force, N.
+  Vec3 friction(std::size_t body) const;
+  Vec3 mean_friction(std::size_t body) const;
   double peak_speed(std::size_t body) const { return peak_speed_[body]; }  ///< m/s
   std::int64_t flow_steps() const { return flow_steps_; }
   double max_courant() const { return max_courant_; }
@@ -75,7 +78,7 @@ class CoupledModel {
   std::optional<Splitter> splitter_;
   std::vector<Operator> step_;
   std::vector<Load> loads_;
-  std::vector<Vec3> impulse_, start_velocity_, before_, force_sum_, torque_sum_;
+  std::vector<Vec3> impulse_, start_velocity_, before_, force_sum_, friction_sum_, torque_sum_;
   std::vector<std::vector<Vec3>> undisturbed_;
   std::vector<double> peak_speed_;
   double averaged_ = 0.0, max_courant_ = 0.0, courant_ = 0.0, peak_energy_ = 0.0;

@@ -24,6 +24,7 @@ std::vector<Column> body_columns() {
   add("velocity", "m/s");
   add("spin", "rad/s");
   add("force", "N");
+  add("friction", "N");  // its part in the force
   add("torque", "N m");
   add("contact_force", "N");
   return c;
@@ -143,11 +144,11 @@ void RunOutputs::update_probes(double time) {
 void RunOutputs::write_histories(double time) {
   const auto bodies = model_.particles().bodies();
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
-    std::array<double, 18> row;
+    std::array<double, 21> row;
     const Vec3 columns[] = {bodies[b].position,         bodies[b].velocity,
                             bodies[b].angular_velocity, model_.loads()[b].force,
-                            model_.loads()[b].torque,   model_.particles().contact_force(int(b))};
-    for (std::size_t n = 0; n < 18; ++n) row[n] = columns[n / 3][static_cast<int>(n % 3)];
+                            model_.friction(b),             model_.loads()[b].torque,   model_.particles().contact_force(int(b))};
+    for (std::size_t n = 0; n < 21; ++n) row[n] = columns[n / 3][static_cast<int>(n % 3)];
     bodies_[b]->add(time, row);
   }
   for (Probe& p : probes_) p.write(time);

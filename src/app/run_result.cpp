@@ -43,6 +43,7 @@ Json body_json(const CoupledModel& m, std::size_t b) {
   j["impulse_y_N_s"] = impulse.y();
   j["impulse_z_N_s"] = impulse.z();
   j["mean_force_N"] = vector_json(m.mean_force(b));
+  j["mean_friction_N"] = vector_json(m.mean_friction(b));
   j["mean_torque_N_m"] = vector_json(m.mean_torque(b));
   if (c.stream.enabled && c.stream.velocity.norm() > 0.0) {
     const Vec3 direction = c.stream.velocity.normalized();

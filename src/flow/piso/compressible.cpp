@@ -117,7 +117,7 @@ double Compressible::stable_dt(double courant) {
 /// temperature would be smeared against its mass, and heat would answer the density too late.
 template <class P>
 void Compressible::smooth_increments(double dt) {
-  smoother_.prepare(0.5 * dt * largest_nu_);
+  smoother_.prepare(0.5 * dt * largest_nu_, {}, {});
   Field& increment = next_[kRho];
   for (const int c : {kRho, kU, kV, kW, kP, kK, kE}) {
     if ((c == kV && !P::across) || ((c == kK || c == kE) && !P::turbulent)) continue;

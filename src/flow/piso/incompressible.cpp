@@ -184,7 +184,7 @@ void Incompressible::advance(double time, double dt, SolidMask& solids) {
   move_displaced(cut_flow_.begin(cut, std::as_const(*this).views(u_)));
   cut_pressure_.begin(cut);
   smoothing_ = turbulence_ && dt > explicit_dt_;
-  if (smoothing_) smoother_.prepare(0.5 * dt * largest_viscosity_);
+  if (smoothing_) smoother_.prepare(0.5 * dt * largest_viscosity_, cut, cut_flow_.carried());
 
   book_boundaries(predict(0.0, 1.0, time, h, cut), dt);
   cut_flow_.rub(cut, views(u_star_), wall_turbulence(), dt, kStageWeight * setup_.density);

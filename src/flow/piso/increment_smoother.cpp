@@ -26,7 +26,99 @@ IncrementSmoother::IncrementSmoother(const Grid& grid)
   }
 }
 
-void IncrementSmoother::prepare(double nu_dt) {
+void IncrementSmoother::list_lines(const CutCells& cut) {
+  const std::array<int, 3> n{nx_, ny_, nz_};
+  for (std::size_t d = 0; d < 3; ++d) {
+    const int na = n[d == 0 ? 1 : 0], nb = n[d == 2 ? 1 : 2];
+    lines_[d].clear();
+    first_line_[d].assign(static_cast<std::size_t>(nb) + 1, 0);
+    if (!active_[d] || cut.empty()) continue;
+    marked_.assign(static_cast<std::size_t>(na) * static_cast<std::size_t>(nb), 0);
+    const auto mark = [&](int i, int j, int k) {
+      const int a = d == 0 ? j : i, b = d == 2 ? j : k;
+      marked_[static_cast<std::size_t>(b) * static_cast<std::size_t>(na) + static_cast<std::size_t>(a)] = 1;
+    };
+    for (const CutCell& c : cut.cells) mark(c.i, c.j, c.k);
+    for (const GhostCell& g : cut.ghosts) mark(g.i, g.j, g.k);
+    for (int b = 0; b < nb; ++b) {
+      for (int a = 0; a < na; ++a)
+        if (marked_[static_cast<std::size_t>(b) * static_cast<std::size_t>(na) + static_cast<std::size_t>(a)])
+          lines_[d].push_back({a, b});
+      first_line_[d][static_cast<std::size_t>(b) + 1] = static_cast<int>(lines_[d].size());
+    }
+  }
+}
+
+/// (m - nu dt D) delta = m r along one line, m the fluid of the cells, by the Thomas algorithm; 0 in solids.
+void IncrementSmoother::solve_line(int axis, Line line, Real* values) const {
+  const std::size_t d = static_cast<std::size_t>(axis);
+  const Operator1D& op = operator_[d];
+  const int n = static_cast<int>(op.volume.size());
+  const int i0 = d == 0 ? 0 : line.a, j0 = d == 0 ? line.a : d == 1 ? 0 : line.b, k0 = d == 2 ? 0 : line.b;
+  const std::ptrdiff_t step = d == 0 ? 1 : d == 1 ? carried_.sy : carried_.sz;
+  const Real *carried = &carried_(i0, j0, k0), *closed = &closed_[d](i0, j0, k0);
+  Real* above = thread_scratch(static_cast<std::size_t>(n), 3);
+  const Real c = static_cast<Real>(nu_dt_);
+  const auto coupling = [&](int at) {  // through the lower face of cell `at`
+    if (at <= 0 || at >= n) return Real(0);
+    if (carried[at * step] <= Real(0) || carried[(at - 1) * step] <= Real(0)) return Real(0);
+    return c * static_cast<Real>(op.coupling[static_cast<std::size_t>(at)]) * (Real(1) - closed[at * step]);
+  };
+  Real before = 0, factor = 0, low = 0;
+  for (int m = 0; m < n; ++m) {
+    const Real mass = carried[m * step] * static_cast<Real>(op.volume[static_cast<std::size_t>(m)]);
+    const Real up = coupling(m + 1);
+    if (mass <= Real(0)) {
+      values[m] = before = factor = above[m] = 0;
+    } else {
+      const Real inverse = Real(1) / (mass + low + up - low * factor);
+      values[m] = before = (mass * values[m] + low * before) * inverse;
+      above[m] = factor = up * inverse;
+    }
+    low = up;
+  }
+  for (int m = n - 2; m >= 0; --m) values[m] += above[m] * values[m + 1];
+}
+
+template <class Smooth>
+void IncrementSmoother::with_cut_lines(FieldView delta, int axis, int first, int last, const Base* base,
+                                       const Smooth& smooth) const {
+  const std::size_t d = static_cast<std::size_t>(axis);
+  const int begin = first_line_[d][static_cast<std::size_t>(first)], end = first_line_[d][static_cast<std::size_t>(last)];
+  if (begin == end) return smooth();
+  const int n = static_cast<int>(operator_[d].volume.size());
+  const std::ptrdiff_t step = d == 0 ? 1 : d == 1 ? delta.sy : delta.sz;
+  const auto offset = [&](const Line& l) {
+    return d == 0 ? l.a * delta.sy + l.b * delta.sz : d == 1 ? l.a + l.b * delta.sz : l.a + l.b * delta.sy;
+  };
+  Real* kept = thread_scratch(static_cast<std::size_t>(end - begin) * static_cast<std::size_t>(n), 2);
+  for (int l = begin; l < end; ++l) {
+    const Real* from = delta.origin + offset(lines_[d][static_cast<std::size_t>(l)]);
+    for (int m = 0; m < n; ++m) kept[(l - begin) * n + m] = from[m * step];
+  }
+  smooth();
+  for (int l = begin; l < end; ++l) {
+    const Line line = lines_[d][static_cast<std::size_t>(l)];
+    Real* values = kept + (l - begin) * n;
+    solve_line(axis, line, values);
+    const std::ptrdiff_t at = offset(line);
+    for (int m = 0; m < n; ++m) {
+      Real sum = values[m];
+      if (base) {
+        if (base->a != Real(0)) sum += base->a * base->one.origin[at + m * step];
+        sum += base->b * base->two.origin[at + m * step];
+        if (sum < base->least) sum = base->least;
+      }
+      delta.origin[at + m * step] = sum;
+    }
+  }
+}
+
+void IncrementSmoother::prepare(double nu_dt, const CutCells& cut, ConstFieldView carried) {
+  nu_dt_ = nu_dt;
+  carried_ = carried;
+  for (std::size_t d = 0; d < 3; ++d) closed_[d] = cut.closed[d].view();
+  list_lines(cut);
   for (std::size_t d = 0; d < 3; ++d) {
     const Operator1D& op = operator_[d];
     Factors& f = factors_[d];
@@ -127,11 +219,12 @@ void IncrementSmoother::apply(FieldView delta, const Base& base) const {
   const int together = ny_ > 1 ? 1 : kRealLanes;
   for_each_index((nz_ + together - 1) / together, [&](int n) {
     const int k0 = n * together, k1 = std::min(k0 + together, nz_);
-    if (active_[1]) smooth_y(delta, k0);
-    if (active_[0]) smooth_x(delta, k0 * ny_, k1 * ny_);
+    if (active_[1]) with_cut_lines(delta, 1, k0, k1, nullptr, [&] { smooth_y(delta, k0); });
+    if (active_[0]) with_cut_lines(delta, 0, k0, k1, nullptr, [&] { smooth_x(delta, k0 * ny_, k1 * ny_); });
   });
   for_each_index((ny_ + kRowsTogether - 1) / kRowsTogether, [&](int n) {
-    smooth_z_and_add(delta, n * kRowsTogether, std::min((n + 1) * kRowsTogether, ny_), base);
+    const int j0 = n * kRowsTogether, j1 = std::min(j0 + kRowsTogether, ny_);
+    with_cut_lines(delta, 2, j0, j1, &base, [&] { smooth_z_and_add(delta, j0, j1, base); });
   });
 }
 
