@@ -79,7 +79,31 @@ std::array<Real, 3> CutFlow::gradient(const CutCells& cut, const CutCell& carrie
   return g;
 }
 
-Vec3 CutFlow::predict(const CutCells& cut, const MomentumTerms& t) {
+/// Friction of the walls of a carrier over the time `step`, implicit; what it takes is counted `weight` times (kg).
+void CutFlow::rub(CutCells& cut, const CutCell& c, const WallTurbulence& turbulence, Real step, double weight,
+                  std::array<Real, 3>& v) const {
+  const Real volume = c.carried * static_cast<Real>(grid_.volume(c.i, c.j, c.k));
+  const bool turbulent = turbulence.present();
+  const Real y = turbulent ? wall_distance(grid_, c) : std::max(c.distance, kNearest * width_along_normal(grid_, c));
+  for_each_wall(cut, c, [&](const CutWall& wall, int w) {
+    const Real area = norm(wall.area);
+    if (area <= Real(0)) return;
+    Triple moved{v[0] - wall.velocity[0], v[1] - wall.velocity[1], v[2] - wall.velocity[2]};
+    if (turbulent) moved = velocity_along(wall, v);
+    const Real conductance = turbulent ? wall_law::conductance(norm(moved), y, nu_,
+                                                               std::max(turbulence.k(c.i, c.j, c.k), Real(0)),
+                                                               wall.roughness)
+                                       : nu_ / y;
+    const Real rate = step * area * conductance / volume, part = rate / (Real(1) + rate);
+    for (std::size_t e = 0; e < 3; ++e) {
+      const Real change = part * moved[e];
+      v[e] -= change;
+      cut.friction_impulse[static_cast<std::size_t>(w)][int(e)] += weight * double(volume) * double(change);
+    }
+  });
+}
+
+Vec3 CutFlow::predict(CutCells& cut, const MomentumTerms& t, const WallTurbulence& turbulence, double weight) {
   for_each_index(static_cast<int>(cut.cells.size()), [&](int n) {
     const CutCell& c = cut.cells[static_cast<std::size_t>(n)];
     Vec3& displaced = sums_[static_cast<std::size_t>(n)];
@@ -99,13 +123,17 @@ Vec3 CutFlow::predict(const CutCells& cut, const MomentumTerms& t) {
     const Triple g = gradient(cut, c, t.pressure);
     gradient_[static_cast<std::size_t>(n)] = g;
     const Real volume = c.carried * static_cast<Real>(grid_.volume(c.i, c.j, c.k)), step = t.b * t.dt;
+    Triple base, v;
     for (std::size_t e = 0; e < 3; ++e) {
       Real rate = t.acceleration[e] - balance[e] / volume - g[e];
       if (t.source[e].origin) rate += t.source[e](c.i, c.j, c.k);
-      const Real base = t.increment_only ? Real(0) : t.a * t.old[e](c.i, c.j, c.k) + t.b * here[e];
-      t.out[e](c.i, c.j, c.k) = base + step * rate;
+      base[e] = t.b * here[e];
+      if (t.a != Real(0)) base[e] += t.a * t.old[e](c.i, c.j, c.k);
+      v[e] = base[e] + step * rate;
       displaced[int(e)] = outflow * double(here[e]);
     }
+    rub(cut, c, turbulence, step, weight, v);
+    for (std::size_t e = 0; e < 3; ++e) t.out[e](c.i, c.j, c.k) = t.increment_only ? v[e] - base[e] : v[e];
   });
   for_each_index(static_cast<int>(cut.ghosts.size()), [&](int n) {
     const GhostCell& g = cut.ghosts[static_cast<std::size_t>(n)];
@@ -115,35 +143,6 @@ Vec3 CutFlow::predict(const CutCells& cut, const MomentumTerms& t) {
   Vec3 total{0, 0, 0};
   for (const Vec3& s : sums_) total += s;
   return total;
-}
-
-void CutFlow::rub(CutCells& cut, const std::array<FieldView, 3>& u, const WallTurbulence& turbulence, double dt,
-                  double density_weight) const {
-  for_each_index(static_cast<int>(cut.cells.size()), [&](int n) {
-    const CutCell& c = cut.cells[static_cast<std::size_t>(n)];
-    if (c.carrier != n) return;
-    const Real volume = c.carried * static_cast<Real>(grid_.volume(c.i, c.j, c.k));
-    Triple v{u[0](c.i, c.j, c.k), u[1](c.i, c.j, c.k), u[2](c.i, c.j, c.k)};
-    const bool turbulent = turbulence.present();
-    const Real y = turbulent ? wall_distance(grid_, c) : std::max(c.distance, kNearest * width_along_normal(grid_, c));
-    for_each_wall(cut, c, [&](const CutWall& wall, int w) {
-      const Real area = norm(wall.area);
-      if (area <= Real(0)) return;
-      Triple moved{v[0] - wall.velocity[0], v[1] - wall.velocity[1], v[2] - wall.velocity[2]};
-      if (turbulent) moved = velocity_along(wall, v);
-      const Real conductance = turbulent ? wall_law::conductance(norm(moved), y, nu_,
-                                                                 std::max(turbulence.k(c.i, c.j, c.k), Real(0)),
-                                                                 wall.roughness)
-                                         : nu_ / y;
-      const Real rate = static_cast<Real>(dt) * area * conductance / volume, part = rate / (Real(1) + rate);
-      for (std::size_t e = 0; e < 3; ++e) {
-        const Real change = part * moved[e];
-        v[e] -= change;
-        cut.friction_impulse[static_cast<std::size_t>(w)][int(e)] += density_weight * double(volume) * double(change);
-      }
-    });
-    for (std::size_t e = 0; e < 3; ++e) u[e](c.i, c.j, c.k) = v[e];
-  });
 }
 
 void CutFlow::extend(const CutCells& cut, const std::array<FieldView, 3>& u, const WallTurbulence& turbulence) {

@@ -31,12 +31,10 @@ class CutFlow {
   ConstFieldView carried() const { return carried_.view(); }
   Field& carried_field() { return carried_; }
 
-  /// Writes terms.out of cut cells; of ghosts it says that nothing changes. Returns the momentum over density that
-  /// the displaced fluid takes along, m4/s.
-  Vec3 predict(const CutCells& cut, const MomentumTerms& terms);
-  /// Friction of the walls over `dt`, implicit, counted `weight` times in cut.friction_impulse.
-  void rub(CutCells& cut, const std::array<FieldView, 3>& u, const WallTurbulence& turbulence, double dt,
-           double density_weight) const;
+  /// Writes terms.out of cut cells, friction included, which is counted `weight` times (density, kg/m3) in
+  /// cut.friction_impulse; of ghosts it says that nothing changes. Returns the momentum over density that the displaced
+  /// fluid takes along, m4/s2.
+  Vec3 predict(CutCells& cut, const MomentumTerms& terms, const WallTurbulence& turbulence, double weight);
   /// Ghosts take what the stencils should see.
   void extend(const CutCells& cut, const std::array<FieldView, 3>& u, const WallTurbulence& turbulence);
   /// q on the faces of cut cells, of what flows through their open parts; closed ones move with the solid.
@@ -53,6 +51,8 @@ class CutFlow {
   void press(CutCells& cut, ConstFieldView p, double dt_density) const;
 
  private:
+  void rub(CutCells& cut, const CutCell& carrier, const WallTurbulence& turbulence, Real step, double weight,
+           std::array<Real, 3>& velocity) const;
   std::array<Real, 3> gradient(const CutCells& cut, const CutCell& carrier, ConstFieldView p) const;
 
   const Grid& grid_;

@@ -117,7 +117,8 @@ void Incompressible::evaluate_source(double time) {
   });
 }
 
-BoundaryFlow Incompressible::predict(double a, double b, double time, Real dt, CutCells& cut) {
+/// `weight`: what the friction of this stage counts in the step.
+BoundaryFlow Incompressible::predict(double a, double b, double time, Real dt, CutCells& cut, double weight) {
   {
     ScopedTimer timer(times_.boundaries);
     boundaries_.fill_velocity(views(u_), views(q_));
@@ -140,7 +141,7 @@ BoundaryFlow Incompressible::predict(double a, double b, double time, Real dt, C
   t.dt = dt;
   t.increment_only = smoothing_;
   const BoundaryFlow through = predict_momentum(grid_, t, boundary_sums_);
-  move_displaced(kStageWeight * double(dt) * cut_flow_.predict(cut, t));
+  move_displaced(kStageWeight * double(dt) * cut_flow_.predict(cut, t, wall_turbulence(), weight * setup_.density));
   for (int c = 0; smoothing_ && c < 3; ++c) smoother_.apply(u_star_[c].view(), {t.old[c], t.a, t.u[c], t.b});
   return through;
 }
@@ -186,8 +187,7 @@ void Incompressible::advance(double time, double dt, SolidMask& solids) {
   smoothing_ = turbulence_ && dt > explicit_dt_;
   if (smoothing_) smoother_.prepare(0.5 * dt * largest_viscosity_, cut, cut_flow_.carried());
 
-  book_boundaries(predict(0.0, 1.0, time, h, cut), dt);
-  cut_flow_.rub(cut, views(u_star_), wall_turbulence(), dt, kStageWeight * setup_.density);
+  book_boundaries(predict(0.0, 1.0, time, h, cut, kStageWeight), dt);
   cut_flow_.extend(cut, views(u_star_), wall_turbulence());
   {
     ScopedTimer timer(times_.boundaries);
@@ -197,8 +197,7 @@ void Incompressible::advance(double time, double dt, SolidMask& solids) {
   book_pressure(phi_.view(), kStageWeight, dt);
   std::swap(u_old_, u_star_);  // correct() left the velocity of the step's beginning there
 
-  book_boundaries(predict(0.5, 0.5, time + dt, h, cut), dt);
-  cut_flow_.rub(cut, views(u_star_), wall_turbulence(), 0.5 * dt, setup_.density);
+  book_boundaries(predict(0.5, 0.5, time + dt, h, cut, 1.0), dt);
   for (int n = 1; n < setup_.corrections; ++n) {
     cut_flow_.extend(cut, views(u_star_), wall_turbulence());
     correct(cut, h);

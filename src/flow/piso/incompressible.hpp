@@ -90,7 +90,7 @@ class Incompressible {
   std::vector<Field*> state();
 
  private:
-  BoundaryFlow predict(double a, double b, double time, Real dt, CutCells& cut);
+  BoundaryFlow predict(double a, double b, double time, Real dt, CutCells& cut, double weight);
   void move_displaced(const Vec3& momentum) { ledger_.displaced += setup_.density * momentum; }
   WallTurbulence wall_turbulence() const;
   void correct(const CutCells& cut, Real dt);

@@ -78,6 +78,11 @@ void TwoEquation::advance_cut_cells(const CutCells& cut, const std::array<ConstF
     } else {
       r = advance_sources<false, false>(p, dt);
     }
+    // Its wall rules the dissipation of a cell at the rate of its turbulence, at once where it runs all across.
+    const Real at_wall_s = sst ? wall_law::specific_dissipation(r.k, y, nu_) : wall_law::dissipation(r.k, y, nu_);
+    const Real turnover = sst ? k_omega_sst::kBetaStar * at_wall_s : at_wall_s / r.k;
+    const Real pull = dt * turnover * share / std::max(Real(1) - share, Real(1e-6));
+    r.second = std::max((r.second + pull * at_wall_s) / (Real(1) + pull), kMinimalSecond);
     k_new_(c.i, c.j, c.k) = increments ? r.k - k0 : r.k;
     second_new_(c.i, c.j, c.k) = increments ? r.second - s0 : r.second;
   });
@@ -93,13 +98,9 @@ void TwoEquation::finish_cut_cells(const CutCells& cut) {
   for_each_index(static_cast<int>(cut.cells.size()), [&](int n) {
     const CutCell& c = cut.cells[static_cast<std::size_t>(n)];
     if (c.carrier != n) return;
-    const Real k = std::max(k_(c.i, c.j, c.k), kMinimalK), y = wall_distance(grid_, c);
-    const Real at_wall = sst ? wall_law::specific_dissipation(k, y, nu_) : wall_law::dissipation(k, y, nu_);
-    const Real share = wall_share(grid_, cut, c);
-    Real& second = second_(c.i, c.j, c.k);
-    second = std::max(second + share * (at_wall - second), kMinimalSecond);
+    const Real k = k_(c.i, c.j, c.k), second = second_(c.i, c.j, c.k);
     nut_(c.i, c.j, c.k) = std::min(sst ? k / second : k_epsilon::kCmu * k * k / second, kLargestViscosityRatio * nu_);
-    if (sst) f1_(c.i, c.j, c.k) += share * (Real(1) - f1_(c.i, c.j, c.k));
+    if (sst) f1_(c.i, c.j, c.k) = Real(1);
   });
   for (Field* f : {&k_, &second_, &nut_, &f1_}) extend_to_ghosts(cut, f->view(), ghost_values_);
   for_each_index(static_cast<int>(cut.ghosts.size()), [&](int n) {
