@@ -64,18 +64,25 @@ Vec3 CutFlow::begin(const CutCells& cut, const std::array<ConstFieldView, 3>& u)
   return sum;
 }
 
-std::array<Real, 3> CutFlow::gradient(const CutCells& cut, const CutCell& carrier, ConstFieldView p) const {
-  Triple g{0, 0, 0};
-  for_each_open_face(grid_, cut, carrier,
-                     [&](const CutCell& c, int d, const Cell& face, const Cell& beyond, Real sign, Real open, Real area) {
-                       const std::size_t s = static_cast<std::size_t>(d);
-                       const Metrics m = grid_.metrics(d);
-                       const Real lower = m.weight[face[s]], weight = sign > 0 ? Real(1) - lower : lower;
-                       g[s] += sign * open * area * weight *
-                               (p(beyond[0], beyond[1], beyond[2]) - p(c.i, c.j, c.k));
-                     });
+CutFlow::Gradient CutFlow::gradient(const CutCells& cut, const CutCell& carrier, ConstFieldView p) const {
+  Triple sum{0, 0, 0}, open_area{0, 0, 0}, balance{0, 0, 0};
+  for_each_open_face(
+      grid_, cut, carrier,
+      [&](const CutCell& c, int d, const Cell& face, const Cell& beyond, Real sign, Real open, Real area) {
+        const std::size_t s = static_cast<std::size_t>(d);
+        const Metrics m = grid_.metrics(d);
+        const Real lower = m.weight[face[s]], weight = sign > 0 ? Real(1) - lower : lower;
+        const Real change = p(beyond[0], beyond[1], beyond[2]) - p(c.i, c.j, c.k);
+        sum[s] += sign * open * area * change * m.inv_distance[face[s]];
+        open_area[s] += open * area;
+        balance[s] += sign * open * area * weight * change;
+      });
   const Real volume = carrier.carried * static_cast<Real>(grid_.volume(carrier.i, carrier.j, carrier.k));
-  for (Real& v : g) v /= volume;
+  Gradient g;
+  for (std::size_t d = 0; d < 3; ++d) {
+    g.value[d] = open_area[d] > Real(0) ? sum[d] / open_area[d] : Real(0);
+    g.beyond[d] = volume * g.value[d] - balance[d];
+  }
   return g;
 }
 
@@ -120,7 +127,7 @@ Vec3 CutFlow::predict(CutCells& cut, const MomentumTerms& t, const WallTurbulenc
                          for (std::size_t e = 0; e < 3; ++e)
                            balance[e] += through * (at.carried[e] - here[e]) - sign * open * area * at.stress[e];
                        });
-    const Triple g = gradient(cut, c, t.pressure);
+    const Triple g = gradient(cut, c, t.pressure).value;
     gradient_[static_cast<std::size_t>(n)] = g;
     const Real volume = c.carried * static_cast<Real>(grid_.volume(c.i, c.j, c.k)), step = t.b * t.dt;
     Triple base, v;
@@ -174,11 +181,11 @@ void CutFlow::extend(const CutCells& cut, const std::array<FieldView, 3>& u, con
   });
 }
 
-void CutFlow::face_velocities(const CutCells& cut, const std::array<ConstFieldView, 3>& u, ConstFieldView p, Real dt,
-                              const std::array<FieldView, 3>& q) {
+void CutFlow::face_velocities(const CutCells& cut, const std::array<ConstFieldView, 3>& u, ConstFieldView p,
+                              Real filter_time, const std::array<FieldView, 3>& q) {
   for_each_index(static_cast<int>(cut.cells.size()), [&](int n) {
     const CutCell& c = cut.cells[static_cast<std::size_t>(n)];
-    if (c.carrier == n) gradient_[static_cast<std::size_t>(n)] = gradient(cut, c, p);
+    if (c.carrier == n) gradient_[static_cast<std::size_t>(n)] = gradient(cut, c, p).value;
   });
   // The pressure gradient that moved a cell; false where none did.
   const auto gradient_at = [&](const Cell& c, int d, Real& value) {
@@ -194,6 +201,19 @@ void CutFlow::face_velocities(const CutCells& cut, const std::array<ConstFieldVi
     value = gradient_[static_cast<std::size_t>(carrier)][static_cast<std::size_t>(d)];
     return true;
   };
+  const auto roughness = [&](int d, const Cell& face, Real& value) {
+    const std::size_t s = static_cast<std::size_t>(d);
+    Real below = 0, above = 0;
+    if (face[s] <= 0 || face[s] >= grid_.n(d) || cut.closed[s](face[0], face[1], face[2]) >= Real(1)) return false;
+    Cell low = face;
+    --low[s];
+    if (!gradient_at(low, d, below) || !gradient_at(face, d, above)) return false;
+    const Metrics m = grid_.metrics(d);
+    const Real w = m.weight[face[s]];
+    value = w * below + (Real(1) - w) * above -
+            (p(face[0], face[1], face[2]) - p(low[0], low[1], low[2])) * m.inv_distance[face[s]];
+    return true;
+  };
   const auto set = [&](int d, const Cell& face) {
     const std::size_t s = static_cast<std::size_t>(d);
     if (face[s] <= 0 || face[s] >= grid_.n(d)) return;  // of the box
@@ -201,12 +221,16 @@ void CutFlow::face_velocities(const CutCells& cut, const std::array<ConstFieldVi
     --low[s];
     const Metrics m = grid_.metrics(d);
     const Real w = m.weight[face[s]];
-    Real velocity = w * u[s](low[0], low[1], low[2]) + (Real(1) - w) * u[s](face[0], face[1], face[2]);
-    Real below = 0, above = 0;
-    if (gradient_at(low, d, below) && gradient_at(face, d, above))
-      velocity += dt * (w * below + (Real(1) - w) * above -
-                        (p(face[0], face[1], face[2]) - p(low[0], low[1], low[2])) * m.inv_distance[face[s]]);
-    q[s](face[0], face[1], face[2]) = velocity;
+    const Real velocity = w * u[s](low[0], low[1], low[2]) + (Real(1) - w) * u[s](face[0], face[1], face[2]);
+    // As in face_velocities() of the whole grid; not on the last face before a wall, where the gradient of the cell is
+    // one-sided and its roughness is not that of p.
+    Cell below = face, above = face;
+    --below[s];
+    ++above[s];
+    Real filter = 0, here = 0, low_face = 0, high_face = 0;
+    if (roughness(d, face, here) && roughness(d, below, low_face) && roughness(d, above, high_face))
+      filter = Real(0.5) * here - Real(0.25) * (low_face + high_face);
+    q[s](face[0], face[1], face[2]) = velocity + filter_time * filter;
   };
   for_each_index(static_cast<int>(cut.cells.size()), [&](int n) {
     const CutCell& c = cut.cells[static_cast<std::size_t>(n)];
@@ -253,18 +277,27 @@ void CutFlow::correct(const CutCells& cut, ConstFieldView phi, Real dt, const st
   for_each_index(static_cast<int>(cut.cells.size()), [&](int n) {
     const CutCell& c = cut.cells[static_cast<std::size_t>(n)];
     if (c.carrier != n) return;
-    const Triple g = gradient(cut, c, phi);
+    const Triple g = gradient(cut, c, phi).value;
     for (std::size_t e = 0; e < 3; ++e)
       u[e](c.i, c.j, c.k) = kept_[static_cast<std::size_t>(n)][e] - dt * g[e];
   });
 }
 
 void CutFlow::press(CutCells& cut, ConstFieldView p, double dt_density) const {
-  for_each_index(static_cast<int>(cut.walls.size()), [&](int n) {
-    const CutWall& w = cut.walls[static_cast<std::size_t>(n)];
-    const CutCell& c = cut.cells[static_cast<std::size_t>(w.cell)];
-    const double pressure = p(c.i, c.j, c.k);
-    cut.pressure_impulse[static_cast<std::size_t>(n)] += dt_density * pressure * Vec3(w.area[0], w.area[1], w.area[2]);
+  for_each_index(static_cast<int>(cut.cells.size()), [&](int n) {
+    const CutCell& c = cut.cells[static_cast<std::size_t>(n)];
+    if (c.carrier != n) return;
+    const Gradient g = gradient(cut, c, p);
+    Real total = 0;
+    for_each_wall(cut, c, [&](const CutWall& w, int) { total += norm(w.area); });
+    if (total <= Real(0)) return;
+    for_each_wall(cut, c, [&](const CutWall& w, int at) {
+      const CutCell& cell = cut.cells[static_cast<std::size_t>(w.cell)];
+      const Real pressure = p(cell.i, cell.j, cell.k), share = norm(w.area) / total;
+      for (std::size_t e = 0; e < 3; ++e)
+        cut.pressure_impulse[static_cast<std::size_t>(at)][int(e)] +=
+            dt_density * double(pressure * w.area[e] + share * g.beyond[e]);
+    });
   });
 }
 

@@ -17,10 +17,10 @@ struct WallTurbulence {
 /// What a step does in cut cells after the kernels have treated the whole grid as fluid. A cell that keeps its
 /// momentum (a carrier) is balanced over the fluid of itself and of the small cells it carries:
 ///
-///   V du/dt = -sum A_f [q (u_f - u) - nu_eff (grad u + grad u^T)] - sum A_f (p_f - p) - wall friction
+///   V du/dt = -sum A_f [q (u_f - u) - nu_eff (grad u + grad u^T)] - V grad p - wall friction
 ///
-/// A_f: open parts of faces. The form in u_f - u leaves alone what moves with its solid. The wall takes the pressure
-/// of its cell and the friction of the law of the wall: nothing else passes it.
+/// A_f: open parts of faces. The form in u_f - u leaves alone what moves with its solid. The wall takes the friction of
+/// the law of the wall and the pressure that closes the balance, V grad p - sum A_f p_f: nothing else passes it.
 class CutFlow {
  public:
   CutFlow(const Grid& grid, double viscosity);
@@ -38,8 +38,8 @@ class CutFlow {
   /// Ghosts take what the stencils should see.
   void extend(const CutCells& cut, const std::array<FieldView, 3>& u, const WallTurbulence& turbulence);
   /// q on the faces of cut cells, of what flows through their open parts; closed ones move with the solid.
-  void face_velocities(const CutCells& cut, const std::array<ConstFieldView, 3>& u_star, ConstFieldView p, Real dt,
-                       const std::array<FieldView, 3>& q);
+  void face_velocities(const CutCells& cut, const std::array<ConstFieldView, 3>& u_star, ConstFieldView p,
+                       Real filter_time, const std::array<FieldView, 3>& q);
   /// Turns q into volume flow per whole area, the solid's through the closed part, and back.
   void close(const CutCells& cut, const std::array<FieldView, 3>& q);
   void reopen(const CutCells& cut, const std::array<FieldView, 3>& q) const;
@@ -53,7 +53,12 @@ class CutFlow {
  private:
   void rub(CutCells& cut, const CutCell& carrier, const WallTurbulence& turbulence, Real step, double weight,
            std::array<Real, 3>& velocity) const;
-  std::array<Real, 3> gradient(const CutCells& cut, const CutCell& carrier, ConstFieldView p) const;
+  /// Of p in a carrier: the mean over its open faces, exact where p is linear. What volume times gradient asks of the
+  /// walls beyond the pressure of their cell makes up for the rest of it: m4/s2 for p over density.
+  struct Gradient {
+    std::array<Real, 3> value, beyond;
+  };
+  Gradient gradient(const CutCells& cut, const CutCell& carrier, ConstFieldView p) const;
 
   const Grid& grid_;
   Real nu_;

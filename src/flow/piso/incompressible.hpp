@@ -111,6 +111,7 @@ class Incompressible {
   Field p_, phi_;
   IncrementSmoother smoother_;
   bool smoothing_ = false;
+  Real filter_time_ = Real(1e30);  // s, of the pressure
   double explicit_dt_ = 1e300, largest_viscosity_ = 0;  // of the last stable_dt()
   double convection_ = -1;                              // largest sum |u| / h, 1/s; negative: not known
   std::vector<BoundaryFlow> boundary_sums_;             // scratch

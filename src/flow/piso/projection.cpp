@@ -1,27 +1,47 @@
 #include "flow/piso/projection.hpp"
 
 #include <cmath>
+#include <type_traits>
 
 #include "flow/stencil.hpp"
 
 namespace ejecta {
 namespace {
 
-/// Face velocities along D of row (., j, k), the last face of a row in x included.
+/// What the smooth gradient of p, interpolated between cells, has over that of the two cells beside a face.
+EJECTA_KERNEL Real roughness_of(const Real* pc, std::ptrdiff_t s, const Metrics& m, int at) {
+  const Real w = m.weight[at];
+  const Real smooth = w * cell_gradient(pc - s, s, m, at - 1) + (Real(1) - w) * cell_gradient(pc, s, m, at);
+  return smooth - (pc[0] - pc[-s]) * m.inv_distance[at];
+}
+
+/// Face velocities along D of row (., j, k), the last face of a row in x included. On the faces of the box, which
+/// only periodic ones keep, there are not enough ghosts to look one face further.
 template <int D>
-void faces_along(const Grid& grid, const Metrics& m, ConstFieldView u, ConstFieldView p, Real dt, FieldView q,
+void faces_along(const Grid& grid, const Metrics& m, ConstFieldView u, ConstFieldView p, Real filter_time, FieldView q,
                  int j, int k) {
   const std::ptrdiff_t s = stride(p, D);
   const Real *p_row = p.row(j, k), *u_row = u.row(j, k);
   Real* q_row = q.row(j, k);
-  for_each_lane(0, grid.nx() + (D == 0), [=](int i) {
+  const auto face = [=](int i, auto inner) __attribute__((always_inline)) {
     const int at = D == 0 ? i : D == 1 ? j : k;
     const Real *pc = p_row + i, *uc = u_row + i;
     const Real w = m.weight[at];
-    const Real velocity = w * uc[-s] + (Real(1) - w) * uc[0];
-    const Real smooth = w * cell_gradient(pc - s, s, m, at - 1) + (Real(1) - w) * cell_gradient(pc, s, m, at);
-    q_row[i] = velocity + dt * (smooth - (pc[0] - pc[-s]) * m.inv_distance[at]);
-  });
+    Real filter = roughness_of(pc, s, m, at);
+    if constexpr (inner)
+      filter = Real(0.5) * filter - Real(0.25) * (roughness_of(pc - s, s, m, at - 1) + roughness_of(pc + s, s, m, at + 1));
+    q_row[i] = w * uc[-s] + (Real(1) - w) * uc[0] + filter_time * filter;
+  };
+  const int n = grid.n(D), index = D == 1 ? j : k;
+  if (D == 0) {
+    for_each_lane(1, n, [=](int i) __attribute__((always_inline)) { face(i, std::true_type{}); });
+    face(0, std::false_type{});
+    face(n, std::false_type{});
+  } else if (index > 0 && index < n) {
+    for_each_lane(0, grid.nx(), [=](int i) __attribute__((always_inline)) { face(i, std::true_type{}); });
+  } else {
+    for_each_lane(0, grid.nx(), [=](int i) __attribute__((always_inline)) { face(i, std::false_type{}); });
+  }
 }
 
 /// q -= dt grad phi on the lower D-faces of row (., j, k), and u -= dt grad phi in its cells where `cells`.
@@ -58,15 +78,15 @@ Outflow outflow(const Grid& grid, const std::array<ConstFieldView, 3>& q) {
 
 }  // namespace
 
-void face_velocities(const Grid& grid, const std::array<ConstFieldView, 3>& u_star, ConstFieldView p, Real dt,
-                     const std::array<FieldView, 3>& q) {
+void face_velocities(const Grid& grid, const std::array<ConstFieldView, 3>& u_star, ConstFieldView p,
+                     Real filter_time, const std::array<FieldView, 3>& q) {
   const Metrics m[3] = {grid.metrics(0), grid.metrics(1), grid.metrics(2)};
   for_each_index(grid.nz() + 1, [&](int k) {
     for (int j = 0; j <= grid.ny(); ++j) {
       if (grid.active(0) && j < grid.ny() && k < grid.nz())
-        faces_along<0>(grid, m[0], u_star[0], p, dt, q[0], j, k);
-      if (grid.active(1) && k < grid.nz()) faces_along<1>(grid, m[1], u_star[1], p, dt, q[1], j, k);
-      if (grid.active(2) && j < grid.ny()) faces_along<2>(grid, m[2], u_star[2], p, dt, q[2], j, k);
+        faces_along<0>(grid, m[0], u_star[0], p, filter_time, q[0], j, k);
+      if (grid.active(1) && k < grid.nz()) faces_along<1>(grid, m[1], u_star[1], p, filter_time, q[1], j, k);
+      if (grid.active(2) && j < grid.ny()) faces_along<2>(grid, m[2], u_star[2], p, filter_time, q[2], j, k);
     }
   });
 }
