@@ -112,25 +112,26 @@ void CutMap::measure(Region& r) {
   const Vec3 shift = r.shift;
   const Body& body = *r.body;
   const auto distance = [&](const Vec3& x) { return body.signed_distance(x - shift); };
-  r.distance.resize(static_cast<std::size_t>(r.n[0]) * r.n[1] * r.n[2]);
-  for_each_index(r.n[2], [&](int k) {
-    for (int j = 0; j < r.n[1]; ++j)
-      measure_row(
-          r.n[0], 3.0 * widest,
-          [&](int i) { return grid_.axis(0).centre[static_cast<std::size_t>(r.low[0] + i)]; },
-          [&](int i) { return distance(grid_.centre(r.low[0] + i, r.low[1] + j, r.low[2] + k)); },
-          r.distance.data() + r.at(r.low[0], r.low[1] + j, r.low[2] + k));
-  });
   const int nx = r.n[0] + 1, ny = r.n[1] + 1, nz = r.n[2] + 1;
-  node_.resize(static_cast<std::size_t>(nx) * ny * nz);
+  r.node.resize(static_cast<std::size_t>(nx) * ny * nz);
   for_each_index(nz, [&](int k) {
     for (int j = 0; j < ny; ++j)
       measure_row(
-          nx, 1.8 * widest, [&](int i) { return coordinate(0, r.low[0] + i); },
+          nx, 3.5 * widest, [&](int i) { return coordinate(0, r.low[0] + i); },
           [&](int i) {
             return distance({coordinate(0, r.low[0] + i), coordinate(1, r.low[1] + j), coordinate(2, r.low[2] + k)});
           },
-          node_.data() + static_cast<std::size_t>(k * ny + j) * nx);
+          r.node.data() + static_cast<std::size_t>(k * ny + j) * nx);
+  });
+  r.distance.resize(static_cast<std::size_t>(r.n[0]) * r.n[1] * r.n[2]);
+  for_each_index(r.n[2], [&](int k) {
+    for (int j = 0; j < r.n[1]; ++j) {
+      const float* a = r.node.data() + static_cast<std::size_t>(k * ny + j) * nx;
+      const float *b = a + nx, *c = a + static_cast<std::ptrdiff_t>(nx) * ny, *d = c + nx;
+      float* out = r.distance.data() + r.at(r.low[0], r.low[1] + j, r.low[2] + k);
+      for (int i = 0; i < r.n[0]; ++i)
+        out[i] = 0.125f * (a[i] + a[i + 1] + b[i] + b[i + 1] + c[i] + c[i + 1] + d[i] + d[i + 1]);
+    }
   });
 }
 
@@ -138,7 +139,7 @@ void CutMap::measure(Region& r) {
 void CutMap::cut_edges(const Region& r) {
   const int nx = r.n[0] + 1, ny = r.n[1] + 1, nz = r.n[2] + 1;
   const std::array<int, 3> extent{nx, ny, nz}, step{1, nx, nx * ny};
-  for (auto& e : edge_) e.resize(node_.size());
+  for (auto& e : edge_) e.resize(r.node.size());
   for_each_index(nz, [&](int k) {
     for (int j = 0; j < ny; ++j)
       for (int i = 0; i < nx; ++i) {
@@ -146,7 +147,7 @@ void CutMap::cut_edges(const Region& r) {
         const std::array<int, 3> index{i, j, k};
         for (std::size_t d = 0; d < 3; ++d) {
           if (index[d] + 1 >= extent[d]) continue;
-          const double a = node_[at], b = node_[at + static_cast<std::size_t>(step[d])];
+          const double a = r.node[at], b = r.node[at + static_cast<std::size_t>(step[d])];
           float& fluid = edge_[d][at];
           if ((a < 0.0) == (b < 0.0)) {
             fluid = a < 0.0 ? 0.0f : 1.0f;
@@ -169,7 +170,7 @@ void CutMap::cut_edges(const Region& r) {
 void CutMap::close_faces(const Region& r) {
   const int nx = r.n[0] + 1, ny = r.n[1] + 1, nz = r.n[2] + 1;
   const std::array<int, 3> extent{nx, ny, nz}, step{1, nx, nx * ny};
-  for (auto& f : face_) f.resize(node_.size());
+  for (auto& f : face_) f.resize(r.node.size());
   for_each_index(nz, [&](int k) {
     for (int j = 0; j < ny; ++j)
       for (int i = 0; i < nx; ++i) {
@@ -179,8 +180,8 @@ void CutMap::close_faces(const Region& r) {
           const std::size_t a = (d + 1) % 3, b = (d + 2) % 3;
           if (index[a] + 1 >= extent[a] || index[b] + 1 >= extent[b]) continue;
           const std::size_t sa = static_cast<std::size_t>(step[a]), sb = static_cast<std::size_t>(step[b]);
-          const std::array<bool, 4> fluid{node_[at] >= 0, node_[at + sa] >= 0, node_[at + sa + sb] >= 0,
-                                          node_[at + sb] >= 0};
+          const std::array<bool, 4> fluid{r.node[at] >= 0, r.node[at + sa] >= 0, r.node[at + sa + sb] >= 0,
+                                          r.node[at + sb] >= 0};
           const int corners = fluid[0] + fluid[1] + fluid[2] + fluid[3];
           face_[d][at] = corners == 4   ? 0.0f
                          : corners == 0 ? 1.0f
@@ -219,11 +220,18 @@ void CutMap::record(const Region& r, int region) {
   }
 }
 
+/// From the distances of the corners of the cell.
 Vec3 CutMap::normal_at(const Region& r, int i, int j, int k) const {
-  const Body& body = *r.body;
-  Vec3 n = body.orientation * body.shape.gradient(body.to_body(grid_.centre(i, j, k) - r.shift));
-  for (int d = 0; d < 3; ++d)
-    if (!grid_.active(d)) n[d] = 0.0;
+  const int nx = r.n[0] + 1, ny = r.n[1] + 1;
+  const float* first = r.node.data() + static_cast<std::size_t>(((k - r.low[2]) * ny + j - r.low[1]) * nx + i - r.low[0]);
+  const int at[3] = {i, j, k};
+  Vec3 n{0, 0, 0};
+  for (int corner = 0; corner < 8; ++corner) {
+    const int up[3] = {corner & 1, (corner >> 1) & 1, corner >> 2};
+    const double distance = first[up[0] + nx * (up[1] + ny * up[2])];
+    for (int d = 0; d < 3; ++d)
+      if (grid_.active(d)) n[d] += (up[d] ? distance : -distance) / grid_.axis(d).width[static_cast<std::size_t>(at[d])];
+  }
   const double length = n.norm();
   return length > 0.0 ? Vec3(n / length) : Vec3(Vec3::Zero());
 }

@@ -27,7 +27,8 @@ class CutMap {
     double roughness = 0.0;
     Vec3 shift{0, 0, 0};  ///< of this image, m
     std::array<int, 3> low{}, n{};
-    std::vector<float> distance;  ///< of the centres; far from the surface only its sign is right, m
+    std::vector<float> node;      ///< distance of the corners of its cells; far from the surface only its sign is right, m
+    std::vector<float> distance;  ///< of the centres, the mean of their corners, m
     std::size_t at(int i, int j, int k) const {
       return static_cast<std::size_t>((k - low[2]) * n[1] + j - low[1]) * static_cast<std::size_t>(n[0]) +
              static_cast<std::size_t>(i - low[0]);
@@ -71,7 +72,6 @@ class CutMap {
   std::array<bool, 3> periodic_;
   std::vector<Region> regions_;
   int used_ = 0;                                 // regions in use
-  std::vector<float> node_;                      // distance of the corners of the region's cells
   std::array<std::vector<float>, 3> edge_;       // fluid part of its edges
   std::array<std::vector<float>, 3> face_;       // closed part of its faces
   std::vector<std::vector<Record>> planes_;      // scratch, one list a plane

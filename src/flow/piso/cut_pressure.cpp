@@ -53,6 +53,13 @@ void CutPressure::begin(const CutCells& cut) {
     c.above = entry(f.i, f.j, f.k);
     couplings_.push_back(c);
   }
+  Range3 box{grid_.nx(), 0, grid_.ny(), 0, grid_.nz(), 0};
+  for (const Entry& e : entries_) {
+    box.i0 = std::min(box.i0, e.i), box.i1 = std::max(box.i1, e.i + 1);
+    box.j0 = std::min(box.j0, e.j), box.j1 = std::max(box.j1, e.j + 1);
+    box.k0 = std::min(box.k0, e.k), box.k1 = std::max(box.k1, e.k + 1);
+  }
+  if (!entries_.empty() && whole_.has_windows()) whole_.resize(window_, box);
   for (auto* v : {&phi_, &closed_, &residual_, &z_, &direction_, &whole_direction_, &source_}) v->resize(entries_.size());
 }
 
@@ -77,27 +84,56 @@ double CutPressure::product(const std::vector<Real>& a, const std::vector<Real>&
   return sum;
 }
 
+void CutPressure::scatter(const std::vector<Real>& r) {
+  for (std::size_t n = 0; n < entries_.size(); ++n) sources_(entries_[n].i, entries_[n].j, entries_[n].k) = r[n];
+}
+
+void CutPressure::to_window(const std::vector<Real>& r) {
+  const Range3& c = window_.cells;
+  std::fill_n(window_.row(c.j0, c.k0),
+              static_cast<std::ptrdiff_t>(window_.width) * (c.j1 - c.j0) * (c.k1 - c.k0), Real(0));
+  for (std::size_t n = 0; n < entries_.size(); ++n)
+    window_.row(entries_[n].j, entries_[n].k)[entries_[n].i - window_.first] = r[n];
+}
+
+void CutPressure::from_window(std::vector<Real>& out) {
+  for (std::size_t n = 0; n < entries_.size(); ++n)
+    out[n] = window_.row(entries_[n].j, entries_[n].k)[entries_[n].i - window_.first];
+}
+
+void CutPressure::invert(const std::vector<Real>& r, std::vector<Real>& out) {
+  if (!whole_.has_windows()) {
+    scatter(r);
+    whole_.solve(sources_.view(), work_.view());
+    return gather(work_.view(), out);
+  }
+  to_window(r);
+  whole_.solve(window_);
+  from_window(out);
+}
+
 /// With L the operator of the whole grid and C what passes closed faces, (L - C) phi = rhs. Residuals and L times the
 /// directions vanish but on the entries, since L is inverted exactly.
 void CutPressure::solve(const CutCells& cut, FieldView phi, double tolerance) {
   for (const GhostCell& g : cut.ghosts)
     if (cut.index(g.i, g.j, g.k) < 0) phi(g.i, g.j, g.k) = 0;  // but for round-off it is
-  whole_.solve(phi, phi);
   iterations_ = 0;
-  if (couplings_.empty()) return;
-  const FieldView sources = sources_.view(), work = work_.view();
-  const auto apply_inverse = [&](const std::vector<Real>& r, std::vector<Real>& out) {
-    for (std::size_t n = 0; n < entries_.size(); ++n) sources(entries_[n].i, entries_[n].j, entries_[n].k) = r[n];
-    whole_.solve(sources, work);
-    gather(work, out);
-  };
-  gather(phi, phi_);
+  if (couplings_.empty()) return whole_.solve(phi, phi);
+  const bool windows = whole_.has_windows();
+  if (windows) {
+    whole_.begin(phi);
+    whole_.read(window_);
+    from_window(phi_);
+  } else {
+    whole_.solve(phi, phi);
+    gather(phi, phi_);
+  }
   through_closed(phi_, residual_);
   std::fill(source_.begin(), source_.end(), Real(0));
   // r = C phi, z = L^-1 r; steps along z, on which (L - C) is negative definite
   double before = 0.0, first = 0.0;
   for (int n = 0; n < kMostIterations; ++n) {
-    apply_inverse(residual_, z_);
+    invert(residual_, z_);
     const double now = -product(residual_, z_);
     if (n == 0) first = now;
     if (!(now > tolerance * tolerance * first) || !(now > 0.0)) break;
@@ -118,10 +154,15 @@ void CutPressure::solve(const CutCells& cut, FieldView phi, double tolerance) {
     }
     before = now;
   }
-  for (std::size_t n = 0; n < entries_.size(); ++n) sources(entries_[n].i, entries_[n].j, entries_[n].k) = source_[n];
-  whole_.solve(sources, work);
-  for_each_cell(grid_.range(), [=](int i, int j, int k) { phi(i, j, k) += work(i, j, k); });
-  for (const Entry& e : entries_) sources(e.i, e.j, e.k) = 0;
+  if (windows) {
+    to_window(source_);
+    whole_.add(window_);
+    return whole_.finish(phi);
+  }
+  scatter(source_);
+  whole_.solve(sources_.view(), work_.view());
+  for_each_cell(grid_.range(), [=, work = work_.view()](int i, int j, int k) { phi(i, j, k) += work(i, j, k); });
+  for (const Entry& e : entries_) sources_(e.i, e.j, e.k) = 0;
 }
 
 }  // namespace ejecta

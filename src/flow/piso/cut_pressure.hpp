@@ -37,6 +37,11 @@ class CutPressure {
   };
   /// out = what closed faces would let pass of f, entry by entry.
   void through_closed(const std::vector<Real>& f, std::vector<Real>& out);
+  /// out = inverse of the whole grid's operator on r, entry by entry.
+  void invert(const std::vector<Real>& r, std::vector<Real>& out);
+  void scatter(const std::vector<Real>& r);
+  void to_window(const std::vector<Real>& r);
+  void from_window(std::vector<Real>& out);
   void gather(ConstFieldView f, std::vector<Real>& out) const;
   double product(const std::vector<Real>& a, const std::vector<Real>& b) const;
 
@@ -47,6 +52,7 @@ class CutPressure {
   std::vector<Coupling> couplings_;
   std::vector<Real> phi_, closed_, residual_, z_, direction_, whole_direction_, source_;
   Field work_, sources_;
+  FastDiagonalPoisson::Window window_;
   int iterations_ = 0;
 };
 

@@ -1,46 +1,52 @@
 #include "flow/piso/projection.hpp"
 
 #include <cmath>
-#include <type_traits>
 
 #include "flow/stencil.hpp"
 
 namespace ejecta {
 namespace {
 
-/// What the smooth gradient of p, interpolated between cells, has over that of the two cells beside a face.
-EJECTA_KERNEL Real roughness_of(const Real* pc, std::ptrdiff_t s, const Metrics& m, int at) {
-  const Real w = m.weight[at];
-  const Real smooth = w * cell_gradient(pc - s, s, m, at - 1) + (Real(1) - w) * cell_gradient(pc, s, m, at);
-  return smooth - (pc[0] - pc[-s]) * m.inv_distance[at];
+/// r of face_velocities() on a face with two cells and a ghost or more on either side: `pc` points to the cell above it.
+EJECTA_KERNEL Real filtered_roughness(const Real* pc, std::ptrdiff_t s, const Metrics& m, int at) {
+  // Differences at the faces at - 2 ... at + 2, gradients of the cells between them, roughness of the inner three faces
+  const Real d0 = pc[-2 * s] - pc[-3 * s], d1 = pc[-s] - pc[-2 * s], d2 = pc[0] - pc[-s], d3 = pc[s] - pc[0],
+             d4 = pc[2 * s] - pc[s];
+  const auto gradient = [&](int cell, Real low, Real high) __attribute__((always_inline)) {
+    return (m.weight[cell] * low + (Real(1) - m.weight[cell + 1]) * high) * m.inv_width[cell];
+  };
+  const Real g0 = gradient(at - 2, d0, d1), g1 = gradient(at - 1, d1, d2), g2 = gradient(at, d2, d3),
+             g3 = gradient(at + 1, d3, d4);
+  const auto rough = [&](int face, Real low, Real high, Real d) __attribute__((always_inline)) {
+    return high + m.weight[face] * (low - high) - d * m.inv_distance[face];
+  };
+  return Real(0.5) * rough(at, g1, g2, d2) - Real(0.25) * (rough(at - 1, g0, g1, d1) + rough(at + 1, g2, g3, d3));
 }
 
 /// Face velocities along D of row (., j, k), the last face of a row in x included. On the faces of the box, which
-/// only periodic ones keep, there are not enough ghosts to look one face further.
+/// only periodic ones keep, there are not enough ghosts for the filter.
 template <int D>
 void faces_along(const Grid& grid, const Metrics& m, ConstFieldView u, ConstFieldView p, Real filter_time, FieldView q,
                  int j, int k) {
   const std::ptrdiff_t s = stride(p, D);
   const Real *p_row = p.row(j, k), *u_row = u.row(j, k);
   Real* q_row = q.row(j, k);
-  const auto face = [=](int i, auto inner) __attribute__((always_inline)) {
-    const int at = D == 0 ? i : D == 1 ? j : k;
-    const Real *pc = p_row + i, *uc = u_row + i;
-    const Real w = m.weight[at];
-    Real filter = roughness_of(pc, s, m, at);
-    if constexpr (inner)
-      filter = Real(0.5) * filter - Real(0.25) * (roughness_of(pc - s, s, m, at - 1) + roughness_of(pc + s, s, m, at + 1));
-    q_row[i] = w * uc[-s] + (Real(1) - w) * uc[0] + filter_time * filter;
-  };
   const int n = grid.n(D), index = D == 1 ? j : k;
+  const auto mean = [=](int i) __attribute__((always_inline)) {
+    const Real w = m.weight[D == 0 ? i : index];
+    return w * u_row[i - s] + (Real(1) - w) * u_row[i];
+  };
+  const auto filtered = [=](int i) __attribute__((always_inline)) {
+    q_row[i] = mean(i) + filter_time * filtered_roughness(p_row + i, s, m, D == 0 ? i : index);
+  };
   if (D == 0) {
-    for_each_lane(1, n, [=](int i) __attribute__((always_inline)) { face(i, std::true_type{}); });
-    face(0, std::false_type{});
-    face(n, std::false_type{});
+    for_each_lane(1, n, filtered);
+    q_row[0] = mean(0);
+    q_row[n] = mean(n);
   } else if (index > 0 && index < n) {
-    for_each_lane(0, grid.nx(), [=](int i) __attribute__((always_inline)) { face(i, std::true_type{}); });
+    for_each_lane(0, grid.nx(), filtered);
   } else {
-    for_each_lane(0, grid.nx(), [=](int i) __attribute__((always_inline)) { face(i, std::false_type{}); });
+    for_each_lane(0, grid.nx(), [=](int i) __attribute__((always_inline)) { q_row[i] = mean(i); });
   }
 }
 
