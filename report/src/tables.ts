@@ -124,7 +124,7 @@ function numbersText(value: Json | undefined): string {
 
 /** Keys of the ledger that do not speak for themselves. */
 const LEDGER_LABELS: { [key: string]: string } = {
-  leak_m_s: "Leak into solids [m/s]",
+  momentum_of_displaced_fluid_N_s: "Momentum of displaced fluid [N s]",
   bodies_energy_J: "Bodies: energy less the work done on them [J]",
   bodies_energy_scale_J: "Bodies: greatest energy turned over [J]",
   dissipated_J: "Bodies: dissipated [J]",

@@ -58,6 +58,7 @@ CouplingSetup CoupledModel::coupling_setup() const {
   if (s.bodies == BodiesAs::cut_cells) s.body_force = case_.flow.body_force;
   for (std::size_t d = 0; d < 3; ++d)
     s.periodic[d] = grid_.active(int(d)) && case_.boundary[2 * d].type == BoundaryType::periodic;
+  for (const Body& b : particles_.bodies()) s.roughness.push_back(particles_.materials().spec(b.material).roughness);
   return s;
 }
 

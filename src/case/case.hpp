@@ -169,6 +169,7 @@ struct MaterialSpec {
   double restitution = 0.3;
   double friction = 0.5;
   double rolling_friction = 0.0;
+  double roughness = 0.0;  ///< m, sand-grain height
 };
 
 /// [[material_pair]]: overrides the combination of two materials

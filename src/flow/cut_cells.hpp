@@ -53,12 +53,19 @@ struct GhostCell {
   std::array<Real, 3> normal{}, solid{};  ///< of the surface, into the fluid; m/s
 };
 
+/// A whole cell near a solid, for models that ask how far the next wall is.
+struct NearCell {
+  int i = 0, j = 0, k = 0;
+  Real distance = 0;  ///< m
+};
+
 struct CutCells {
   std::vector<CutCell> cells;
   std::vector<int> members;
   std::vector<CutWall> walls;
   std::vector<CutFace> faces;
   std::vector<GhostCell> ghosts;
+  std::vector<NearCell> near;
   /// Of every cell of the grid: 0 plain fluid, n + 1 for cells[n], -1 - n for ghosts[n] that are not in
   /// `cells`. Empty as long as there was no solid.
   Array3<int> index;

@@ -275,6 +275,7 @@ void CutMap::clear(CutCells& out) const {
   out.walls.clear();
   out.faces.clear();
   out.ghosts.clear();
+  out.near.clear();
 }
 
 void CutMap::map(std::span<const Body> bodies, std::span<const double> roughness, CutCells& out) {
@@ -310,6 +311,7 @@ void CutMap::map(std::span<const Body> bodies, std::span<const double> roughness
   choose_carriers(out);
   list_members(out);
   find_donors(out);
+  list_near(out);
   out.pressure_impulse.assign(out.walls.size(), Vec3::Zero());
   out.friction_impulse.assign(out.walls.size(), Vec3::Zero());
 }
@@ -521,6 +523,17 @@ void CutMap::list_members(CutCells& out) const {
     if (out.cells[n].carrier == static_cast<int>(n)) add(n);
   for (std::size_t n = 0; n < out.cells.size(); ++n)
     if (out.cells[n].carrier >= 0 && out.cells[n].carrier != static_cast<int>(n)) add(n);
+}
+
+/// The whole cells of the regions; where those of two bodies overlap the list has both distances.
+void CutMap::list_near(CutCells& out) const {
+  for (int n = 0; n < used_; ++n) {
+    const Region& r = regions_[static_cast<std::size_t>(n)];
+    for (int k = r.low[2]; k < r.low[2] + r.n[2]; ++k)
+      for (int j = r.low[1]; j < r.low[1] + r.n[1]; ++j)
+        for (int i = r.low[0]; i < r.low[0] + r.n[0]; ++i)
+          if (out.index(i, j, k) >= 0) out.near.push_back({i, j, k, static_cast<Real>(r.distance[r.at(i, j, k)])});
+  }
 }
 
 /// Ghosts are the cells inside solids and those whose momentum another carries.

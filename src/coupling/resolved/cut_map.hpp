@@ -58,6 +58,7 @@ class CutMap {
   int carrier_of(const CutCell& c, CutCells& out) const;
   void list_members(CutCells& out) const;
   void find_donors(CutCells& out) const;
+  void list_near(CutCells& out) const;
   void clear(CutCells& out) const;
 
   double coordinate(int d, int node) const;

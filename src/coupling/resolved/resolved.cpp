@@ -148,9 +148,17 @@ void ResolvedCoupling::collect_walls(std::span<const Body> bodies, const CutCell
   }
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     const Body& body = bodies[b];
+    const double displaced = setup_.fluid_density * body.shape.mass_properties().volume;
     loads[b].force = parts_[b].pressure + parts_[b].friction;
-    if (area[b] > 0.0)
-      loads[b].force += setup_.fluid_density * body.shape.mass_properties().volume * (setup_.body_force - setup_.gravity);
+    if (area[b] > 0.0) loads[b].force += displaced * (setup_.body_force - setup_.gravity);
+    Before& m = motion_[b];
+    if (m.known && body.motion == Motion::free && area[b] > 0.0) {
+      const double lambda = displaced / (body.mass + displaced);
+      loads[b].force += lambda * (m.push.force - loads[b].force);
+      loads[b].torque += lambda * (m.push.torque - loads[b].torque);
+    }
+    m.push = loads[b];
+    m.known = true;
   }
 }
 
@@ -191,6 +199,8 @@ std::vector<double> ResolvedCoupling::state() const {
   for (const Before& m : motion_) {
     for (int d = 0; d < 3; ++d) out.push_back(m.velocity[d]);
     for (int d = 0; d < 3; ++d) out.push_back(m.angular_momentum[d]);
+    for (int d = 0; d < 3; ++d) out.push_back(m.push.force[d]);
+    for (int d = 0; d < 3; ++d) out.push_back(m.push.torque[d]);
     out.push_back(m.known);
   }
   return out;
@@ -198,10 +208,12 @@ std::vector<double> ResolvedCoupling::state() const {
 
 void ResolvedCoupling::restore(std::span<const double> state) {
   StateReader in(state, "forces on the bodies");
-  motion_.resize(state.size() / 7);
+  motion_.resize(state.size() / 13);
   for (Before& m : motion_) {
     m.velocity = in.vec3();
     m.angular_momentum = in.vec3();
+    m.push.force = in.vec3();
+    m.push.torque = in.vec3();
     m.known = in.whole(0, 1) == 1;
   }
   in.end();

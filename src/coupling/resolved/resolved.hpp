@@ -36,7 +36,10 @@ class ResolvedCoupling {
   /// Fills mask.cut, or mask.cells with the cells whose centres lie inside bodies.
   void map(std::span<const Body> bodies, SolidMask& mask);
   /// Force and torque on every body over the last flow step of length dt. Cut cells: pressure and friction on its walls
-  /// and buoyancy. Forced cells: F = -sum(impulse) / dt + rho V a - rho V g, where the second term returns the inertia
+  /// and buoyancy, averaged over the steps before with the weight of the displaced fluid against that of the body,
+  /// lambda = rho V / (m + rho V): F += (1 - lambda) (F_now - F). The fluid answers an acceleration within the step that
+  /// follows, so that for a body lighter than its added mass the plain force grows without bound from step to step; this
+  /// one settles on the same value, and for ore in air lambda is 4e-4. Forced cells: F = -sum(impulse) / dt + rho V a - rho V g, where the second term returns the inertia
   /// of the fictitious fluid inside the body (Uhlmann 2005, eq. 18), with the body's acceleration over the step before.
   void collect(std::span<const Body> bodies, const SolidMask& mask, double dt, std::span<Load> loads);
 
@@ -61,6 +64,7 @@ class ResolvedCoupling {
 
   struct Before {
     Vec3 velocity{0, 0, 0}, angular_momentum{0, 0, 0};
+    Load push;  // what the body was given
     bool known = false;
   };
   const Grid& grid_;

@@ -213,19 +213,6 @@ void Incompressible::advance(double time, double dt, SolidMask& solids) {
     }
   }
   cut_flow_.press(cut, p_.view(), dt * setup_.density);
-  if (getenv("EJ_DEBUG")) {
-    double worst = 0; int at = -1;
-    for (std::size_t n = 0; n < cut.cells.size(); ++n) {
-      const CutCell& c = cut.cells[n];
-      const double v = std::abs(u_[0](c.i, c.j, c.k)) + std::abs(u_[1](c.i, c.j, c.k)) + std::abs(u_[2](c.i, c.j, c.k));
-      if (!(v <= worst)) worst = v, at = int(n);
-    }
-    int nc = 0, orphan = 0;
-    for (std::size_t n = 0; n < cut.cells.size(); ++n) { nc += cut.cells[n].carrier == int(n); orphan += cut.cells[n].carrier < 0; }
-    const CutCell& c = cut.cells[std::size_t(std::max(at, 0))];
-    fmt::print(stderr, "t {:.5g} dt {:.4g} it {} cells {} carriers {} orphans {} ghosts {} walls {} worst {:.4g} at {} ({} {} {}) fluid {:.3f} d {:.4g} carried {:.3f} members {} u {:.4g} {:.4g} {:.4g} p {:.4g}\n", time, dt,
-      cut_pressure_.iterations(), cut.cells.size(), nc, orphan, cut.ghosts.size(), cut.walls.size(), worst, at, c.i, c.j, c.k, c.fluid, c.distance, c.carried, c.members, u_[0](c.i,c.j,c.k), u_[1](c.i,c.j,c.k), u_[2](c.i,c.j,c.k), p_(c.i,c.j,c.k));
-  }
   extend_to_ghosts(cut, p_.view(), ghost_values_);
   for (std::size_t w = 0; w < cut.walls.size(); ++w)
     ledger_.impulse_on_solids += cut.pressure_impulse[w] + cut.friction_impulse[w];

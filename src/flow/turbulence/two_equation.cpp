@@ -78,6 +78,9 @@ struct ScalarFlux {
   }
 };
 
+/// m: no wall in sight.
+constexpr Real kNoWall = Real(1e3);
+
 /// Where a transport step writes.
 struct ScalarOut {
   FieldView k, second, nut, f1;
@@ -87,7 +90,7 @@ struct ScalarOut {
 
 template <bool kSst, bool kRound>
 void transport(const Grid& grid, const ScalarFlux<kSst>& face, const std::array<ConstFieldView, 3>& u,
-               const TwoEquation::WallDistance& wall, const ScalarOut& out) {
+               const TwoEquation::WallDistance& wall, ConstFieldView solid_distance, const ScalarOut& out) {
   const Real most = kLargestViscosityRatio * face.nu;
   sweep<2>(grid, face, [&](int j, int k, Real* const(&balance)[2]) {
     const Real *b0 = balance[0], *b1 = balance[1], *inv_volume = face.m[0].inv_volume;
@@ -97,6 +100,7 @@ void transport(const Grid& grid, const ScalarFlux<kSst>& face, const std::array<
     const Real* blending = kSst ? face.f1.row(j, k) : nullptr;
     Real *out_k = out.k.row(j, k), *out_second = out.second.row(j, k), *out_nut = out.nut.row(j, k);
     Real* out_f1 = kSst ? out.f1.row(j, k) : nullptr;
+    const Real* from_solid = kSst ? solid_distance.row(j, k) : nullptr;
     const Real nu = face.nu, *distance_x = wall[0].data();
     const Real distance_jk =
         std::min(wall[1][static_cast<std::size_t>(j)], wall[2][static_cast<std::size_t>(k)]);
@@ -126,7 +130,7 @@ void transport(const Grid& grid, const ScalarFlux<kSst>& face, const std::array<
                        sn = unfinished ? s0 : s1;
             if constexpr (kSst) {
               using namespace k_omega_sst;
-              const Real d = std::min(distance_x[i], distance_jk);
+              const Real d = std::min(std::min(distance_x[i], distance_jk), from_solid[i]);
               out_f1[i] = k_omega_sst::f1(kn, sn, nu, d, Real(2) * kSigmaW2 * product(i));
               out_nut[i] = std::min(eddy_viscosity(kn, sn, rate_of_strain, f2(kn, sn, nu, d)), most);
             } else {
@@ -157,7 +161,9 @@ TwoEquation::TwoEquation(const Grid& grid, TwoEquationModel model, bool round_je
       k_new_(grid.make_field()),
       second_new_(grid.make_field()),
       nut_new_(grid.make_field()),
-      f1_new_(grid.make_field()) {
+      f1_new_(grid.make_field()),
+      solid_distance_(grid.make_field()) {
+  solid_distance_.fill(kNoWall);
   initialise(kMinimalK, kMinimalSecond);
 }
 
@@ -175,7 +181,7 @@ void TwoEquation::measure_walls(const Boundaries& b) {
   for (int d = 0; d < 3; ++d) {
     const Metrics m = grid_.metrics(d);
     std::vector<Real>& distance = wall_distance_[static_cast<std::size_t>(d)];
-    distance.assign(static_cast<std::size_t>(grid_.n(d) + kRealLanes), Real(1e3));  // whole registers
+    distance.assign(static_cast<std::size_t>(grid_.n(d) + kRealLanes), kNoWall);  // whole registers
     for (int side = 0; side < 2; ++side) {
       const bool wall = grid_.active(d) && b.kind(2 * d + side) == BoundaryKind::wall;
       is_wall_[static_cast<std::size_t>(2 * d + side)] = wall;
@@ -185,6 +191,17 @@ void TwoEquation::measure_walls(const Boundaries& b) {
       }
     }
   }
+}
+
+void TwoEquation::measure_solids(const CutCells& cut) {
+  for (const auto& [i, j, k] : near_cells_) solid_distance_(i, j, k) = kNoWall;
+  near_cells_.clear();
+  const auto set = [&](int i, int j, int k, Real distance) {
+    Real& value = solid_distance_(i, j, k);
+    value = std::min(value, std::max(distance, Real(1e-9)));
+    near_cells_.push_back({i, j, k});
+  };
+  for (const NearCell& n : cut.near) set(n.i, n.j, n.k, n.distance);
 }
 
 /// Equilibrium values in the cells next to walls and the wall's eddy viscosity in the ghosts (Launder &
@@ -216,6 +233,7 @@ void TwoEquation::advance(const Boundaries& b, const std::array<ConstFieldView, 
                           const std::array<FieldView, 3>& q, const CutCells& cut, Real dt,
                           const IncrementSmoother* smoother) {
   if (wall_distance_[0].empty()) measure_walls(b);
+  if (model_ == TwoEquationModel::k_omega_sst) measure_solids(cut);
   b.fill_turbulence(k_.view(), second_.view(), q);
   const std::array<ConstFieldView, 3> faces{q[0], q[1], q[2]};
   const ScalarOut out{k_new_.view(), second_new_.view(), nut_new_.view(), f1_new_.view(),
@@ -228,7 +246,7 @@ void TwoEquation::advance(const Boundaries& b, const std::array<ConstFieldView, 
                                {grid_.metrics(0), grid_.metrics(1), grid_.metrics(2)},
                                nu_,
                                dt};
-    transport<sst, round>(grid_, face, u, wall_distance_, out);
+    transport<sst, round>(grid_, face, u, wall_distance_, solid_distance_.view(), out);
   };
   if (model_ == TwoEquationModel::k_omega_sst) run(std::true_type{}, std::false_type{});
   else if (round_jet_) run(std::false_type{}, std::true_type{});
