@@ -212,6 +212,7 @@ void Incompressible::advance(double time, double dt, SolidMask& solids) {
       boundaries_.fill_pressure(p_.view(), views(q_), true);
     }
   }
+  if (!cut.empty()) boundaries_.fill_pressure(p_.view(), views(q_), true);  // of bodies across the faces of the box
   cut_flow_.press(cut, p_.view(), dt * setup_.density);
   if (getenv("EJ_DEBUG")) {
     double worst = 0; int at = -1;
