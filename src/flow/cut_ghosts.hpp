@@ -13,17 +13,22 @@ inline Real from_donors(const GhostCell& g, ConstFieldView f) {
   return sum;
 }
 
-/// Ghosts take a scalar from their donors: no gradient at the wall. `scratch` is kept between calls.
-inline void extend_to_ghosts(const CutCells& cut, FieldView f, std::vector<Real>& scratch) {
+/// Ghosts, those that `which` chooses, take a scalar from their donors: no gradient at the wall. `scratch` is kept
+/// between calls. Small cells have a pressure of their own: only ghosts in solids may take one.
+template <class Which>
+void extend_to_ghosts(const CutCells& cut, FieldView f, std::vector<Real>& scratch, const Which& which) {
   scratch.resize(cut.ghosts.size());
   for_each_index(static_cast<int>(cut.ghosts.size()), [&](int n) {
     const GhostCell& g = cut.ghosts[static_cast<std::size_t>(n)];
-    scratch[static_cast<std::size_t>(n)] = g.donors > 0 ? from_donors(g, f) : f(g.i, g.j, g.k);
+    scratch[static_cast<std::size_t>(n)] = g.donors > 0 && which(g) ? from_donors(g, f) : f(g.i, g.j, g.k);
   });
   for_each_index(static_cast<int>(cut.ghosts.size()), [&](int n) {
     const GhostCell& g = cut.ghosts[static_cast<std::size_t>(n)];
     f(g.i, g.j, g.k) = scratch[static_cast<std::size_t>(n)];
   });
+}
+inline void extend_to_ghosts(const CutCells& cut, FieldView f, std::vector<Real>& scratch) {
+  extend_to_ghosts(cut, f, scratch, [](const GhostCell&) { return true; });
 }
 
 }  // namespace ejecta

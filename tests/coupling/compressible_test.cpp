@@ -22,6 +22,13 @@ godunov::Options air() {
   return o;
 }
 
+CouplingSetup coupling_setup() {
+  CouplingSetup s;
+  s.fluid_density = kDensity;
+  s.bodies = BodiesAs::forced_cells;
+  return s;
+}
+
 Body body_of(Shape shape, double mass, const Vec3& position, const Vec3& velocity) {
   Body b{.name = "body", .shape = std::move(shape)};
   b.mass = mass;
@@ -48,7 +55,7 @@ TEST(BodiesInGas, ABodyThatMovesWithTheWindLeavesItAlone) {
   Tube t(make_axis({0, 1}, {20}, {2}), even_axis(0, 1, 20), make_axis({0, 1}, {20}, {0.5}), false, air());
   t.all_boundaries(BoundaryType::periodic);
   t.fill([&](const Vec3&) { return GasState{kDensity, u, kAmbient}; });
-  ResolvedCoupling coupling(t.grid, kDensity, Vec3::Zero());
+  ResolvedCoupling coupling(t.grid, coupling_setup());
   std::vector<Body> bodies{body_of(make_sphere(0.4), 100.0, {0.4, 0.6, 0.4}, u)};
   bodies[0].motion = Motion::prescribed;
   SolidMask mask;
@@ -70,7 +77,7 @@ TEST(BodiesInGas, MassMomentumAndEnergyOfAClosedBoxAndItsBodyAreKept) {
   t.fill([&](const Vec3& x) {
     return GasState{kDensity, {40 * std::sin(6.28 * x.z()), 10, 30 * std::cos(6.28 * x.x())}, kAmbient};
   });
-  ResolvedCoupling coupling(t.grid, kDensity, Vec3::Zero());
+  ResolvedCoupling coupling(t.grid, coupling_setup());
   std::vector<Body> bodies{body_of(make_box({0.4, 0.3, 0.4}), 1.0, {0.5, 0.5, 0.5}, {5, 0, -5})};
   bodies[0].motion = Motion::prescribed;
   const double mass = t.solver.total(godunov::kRho), energy = t.solver.total(godunov::kP);
@@ -112,7 +119,7 @@ struct Piston {
       const double p = x.x() < 0 ? behind : before;
       return GasState{kDensity * p / kAmbient, {0, 0, 0}, p};
     });
-    ResolvedCoupling coupling(t.grid, kDensity, Vec3::Zero());
+    ResolvedCoupling coupling(t.grid, coupling_setup());
     std::vector<Body> bodies{body_of(make_box({0.0625, 1, 1}), mass, {0, 0, 0}, {0, 0, 0})};
     SolidMask mask;
     const int steps = 3 * cells;

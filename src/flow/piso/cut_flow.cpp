@@ -64,6 +64,14 @@ Vec3 CutFlow::begin(const CutCells& cut, const std::array<ConstFieldView, 3>& u)
   return sum;
 }
 
+void CutFlow::resume() {
+  touched_.clear();
+  for (int k = 0; k < grid_.nz(); ++k)
+    for (int j = 0; j < grid_.ny(); ++j)
+      for (int i = 0; i < grid_.nx(); ++i)
+        if (carried_(i, j, k) != Real(1)) touched_.push_back({i, j, k});
+}
+
 CutFlow::Gradient CutFlow::gradient(const CutCells& cut, const CutCell& carrier, ConstFieldView p) const {
   Triple sum{0, 0, 0}, open_area{0, 0, 0}, balance{0, 0, 0};
   for_each_open_face(

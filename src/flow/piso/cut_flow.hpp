@@ -30,6 +30,7 @@ class CutFlow {
   /// Part of a cell's volume whose momentum it carries: 1 in plain fluid, 0 in solids.
   ConstFieldView carried() const { return carried_.view(); }
   Field& carried_field() { return carried_; }
+  void resume();  ///< carried_field() has been filled again
 
   /// Writes terms.out of cut cells, friction included, which is counted `weight` times (density, kg/m3) in
   /// cut.friction_impulse; of ghosts it says that nothing changes. Returns the momentum over density that the displaced

@@ -212,8 +212,9 @@ void Incompressible::advance(double time, double dt, SolidMask& solids) {
       boundaries_.fill_pressure(p_.view(), views(q_), true);
     }
   }
+  if (!cut.empty()) boundaries_.fill_pressure(p_.view(), views(q_), true);  // of bodies across the faces of the box
   cut_flow_.press(cut, p_.view(), dt * setup_.density);
-  extend_to_ghosts(cut, p_.view(), ghost_values_);
+  extend_to_ghosts(cut, p_.view(), ghost_values_, [&cut](const GhostCell& g) { return cut.index(g.i, g.j, g.k) < 0; });
   for (std::size_t w = 0; w < cut.walls.size(); ++w)
     ledger_.impulse_on_solids += cut.pressure_impulse[w] + cut.friction_impulse[w];
 

@@ -85,7 +85,10 @@ class Incompressible {
   /// False as soon as any velocity is not finite; `where` gets the first such cell.
   bool finite(Vec3* where = nullptr) const;
   /// To be called after `state()` has been filled again: brings boundary states to `time`.
-  void resume(double time) { boundaries_.update(time); }
+  void resume(double time) {
+    boundaries_.update(time);
+    cut_flow_.resume();
+  }
   /// Everything a resume needs, in a fixed order.
   std::vector<Field*> state();
 

@@ -1,0 +1,315 @@
+#include "flow/piso/incompressible.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <memory>
+#include <random>
+
+#include "base/parallel.hpp"
+#include "coupling/resolved/resolved.hpp"
+
+/// Bodies in incompressible flow: what must be kept, and forces that are known.
+namespace ejecta {
+namespace {
+
+constexpr bool kSingle = sizeof(Real) == 4;
+constexpr double kDensity = 1.2;
+
+Body body_of(Shape shape, const Vec3& position, const Vec3& velocity = Vec3::Zero()) {
+  Body b{.name = "body", .shape = std::move(shape)};
+  b.mass = 1.0;
+  b.position = position;
+  b.velocity = velocity;
+  return b;
+}
+
+Body turned(Body b, double angle, const Vec3& axis) {
+  b.orientation = Quat(Eigen::AngleAxisd(angle, axis.normalized()));
+  return b;
+}
+
+Axis even(double low, double high, int n) { return make_axis({low, high}, {n}, {}); }
+
+std::array<Boundary, 6> all(BoundaryKind kind) {
+  std::array<Boundary, 6> faces;
+  for (Boundary& b : faces) b.kind = kind;
+  return faces;
+}
+
+/// Flow with bodies that move as they are told.
+struct Bodies {
+  Grid grid;
+  std::vector<Body> bodies;
+  Incompressible flow;
+  ResolvedCoupling coupling;
+  SolidMask mask;
+  std::vector<Load> loads;
+  double time = 0.0;
+
+  Bodies(Grid g, const std::array<Boundary, 6>& faces, IncompressibleSetup setup, std::vector<Body> them,
+         const Vec3& velocity)
+      : grid(std::move(g)),
+        bodies(std::move(them)),
+        flow(grid, faces, with_density(setup)),
+        coupling(grid, coupling_setup(faces)),
+        loads(bodies.size()) {
+    if (setup.turbulence) flow.turbulence()->initialise(1e-2, 0.1);
+    flow.initialise([&](const Vec3&) { return velocity; }, [](const Vec3&) { return 0.0; }, 0.0);
+  }
+  static IncompressibleSetup with_density(IncompressibleSetup s) {
+    s.density = kDensity;
+    return s;
+  }
+  static CouplingSetup coupling_setup(const std::array<Boundary, 6>& faces) {
+    CouplingSetup s;
+    s.fluid_density = kDensity;
+    for (std::size_t d = 0; d < 3; ++d) s.periodic[d] = faces[2 * d].kind == BoundaryKind::periodic;
+    return s;
+  }
+  void step(double dt) {
+    coupling.map(bodies, mask);
+    flow.advance(time, dt, mask);
+    coupling.collect(bodies, mask, dt, loads);
+    time += dt;
+    for (Body& b : bodies) {
+      b.position += dt * b.velocity;
+      const double turn = dt * b.angular_velocity.norm();
+      if (turn > 0.0) b.orientation = Quat(Eigen::AngleAxisd(turn, b.angular_velocity.normalized())) * b.orientation;
+      for (int d = 0; d < 3; ++d)  // into a periodic box
+        if (flow.boundaries().kind(2 * d) == BoundaryKind::periodic) {
+          const double length = grid.axis(d).length();
+          b.position[d] -= length * std::floor((b.position[d] - grid.lower()[d]) / length);
+        }
+    }
+  }
+  /// What the ledger cannot explain, N s.
+  double lost(const Vec3& start) const {
+    const FlowLedger& l = flow.ledger();
+    return (flow.momentum() - start - l.momentum_through_boundaries + l.impulse_on_solids - l.displaced).norm();
+  }
+};
+
+void expect_uniform(const Bodies& b, const Vec3& u, int step) {
+  for (int c = 0; c < 3; ++c)
+    for (int k = 0; k < b.grid.nz(); ++k)
+      for (int j = 0; j < b.grid.ny(); ++j)
+        for (int i = 0; i < b.grid.nx(); ++i)
+          ASSERT_NEAR(b.flow.velocity_field(c)(i, j, k), u[c], 1e-4 * u.norm())
+              << c << " at " << i << " " << j << " " << k << " in step " << step;
+}
+
+TEST(BodiesInLiquid, ABodyThatMovesWithTheStreamLeavesItAlone) {
+  const Vec3 u(30, -12, 9);
+  for (const bool periodic : {true, false})
+    for (const bool turbulent : {false, true}) {
+      std::array<Boundary, 6> faces = all(periodic ? BoundaryKind::periodic : BoundaryKind::inflow);
+      if (!periodic) {
+        for (Boundary& b : faces) b.state = [u](const Vec3&, double) {
+          BoundaryState s;
+          for (int d = 0; d < 3; ++d) s.velocity[std::size_t(d)] = static_cast<Real>(u[d]);
+          s.k = Real(1e-2), s.second = Real(0.1);
+          return s;
+        };
+        faces[1].kind = BoundaryKind::open;
+      }
+      IncompressibleSetup setup;
+      if (turbulent) setup.turbulence = TwoEquationModel::k_epsilon;
+      Bodies b(Grid(even(0, 1, 20), even(0, 1, 20), even(0, 1, 18)), faces, setup,
+               {body_of(make_sphere(0.32), {0.3, 0.7, 0.31}, u),
+                turned(body_of(make_box({0.3, 0.25, 0.2}), {0.31, 0.35, 0.7}, u), 0.5, {1, 2, 3})},
+               u);
+      const double area = 0.08, scale = 0.5 * kDensity * u.squaredNorm() * area;
+      double largest = 0.0;
+      for (int n = 0; n < (periodic ? 40 : 12); ++n) {
+        b.step(b.flow.stable_dt(0.8));
+        expect_uniform(b, u, n);
+        if (testing::Test::HasFatalFailure()) return;
+        for (const Load& l : b.loads) {
+          EXPECT_LT(l.force.norm(), 1e-3 * scale) << periodic << turbulent << " " << n;
+          largest = std::max(largest, l.force.norm() / scale);
+        }
+      }
+      printf("periodic %d turbulent %d largest force %g\n", periodic, turbulent, largest);
+    }
+}
+
+TEST(BodiesInLiquid, MomentumOfAPeriodicBoxAndItsBodiesIsKept) {
+  for (const bool turbulent : {false, true}) {
+    IncompressibleSetup setup;
+    if (turbulent) setup.turbulence = TwoEquationModel::k_omega_sst;
+    Bodies b(Grid(even(0, 1, 20), even(0, 1, 16), even(0, 1, 18)), all(BoundaryKind::periodic), setup,
+             {body_of(make_sphere(0.32), {0.95, 0.03, 0.93}, {2, 0, 1}),
+              turned(body_of(make_box({0.3, 0.25, 0.2}), {0.05, 0.5, 0.5}, {-3, 0, 0}), 0.5, {1, 2, 3})},
+             {20, 5, -8});
+    b.bodies[1].angular_velocity = {0, 20, 10};
+    const Vec3 start = b.flow.momentum();
+    for (int n = 0; n < 25; ++n) b.step(b.flow.stable_dt(0.8));
+    const double moved = b.flow.ledger().impulse_on_solids.norm();
+    printf("lost %g displaced %g\n", b.lost(start) / moved, b.flow.ledger().displaced.norm() / moved);
+    EXPECT_GT(moved, 0.1 * start.norm() * 0.02);
+    EXPECT_LT(b.lost(start), (kSingle ? 1e-4 : 1e-8) * (moved + start.norm()));
+    EXPECT_LT(b.flow.largest_divergence(b.mask.cut), kSingle ? 1e-5 : 1e-13);
+  }
+}
+
+/// A rock: the hull of points near a sphere.
+Shape rock(unsigned seed, double size) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> part(-1.0, 1.0);
+  std::vector<Vec3> points;
+  while (points.size() < 14) {
+    const Vec3 x(part(random), part(random), part(random));
+    if (x.norm() > 0.3 && x.norm() < 1.0) points.push_back(0.5 * size * (0.8 + 0.2 * part(random)) * x.normalized());
+  }
+  return make_polyhedron(points);
+}
+
+/// Bodies in contact, all of them moving, in millimetres of a jet's box.
+std::vector<Body> two_cubes() {
+  const Shape cube = make_box({6e-3, 6e-3, 6e-3});
+  return {body_of(cube, {-3.05e-3, 0.3e-3, 14e-3}, {4, 1, 8}), body_of(cube, {2.95e-3, -0.2e-3, 14.4e-3}, {4, 1, 8})};
+}
+std::vector<Body> cube_on_an_edge() {
+  const Shape cube = make_box({6e-3, 6e-3, 6e-3});
+  Body above = turned(body_of(cube, {0.7e-3, 0.1e-3, 13e-3 + 3e-3 + std::sqrt(18.0) * 1e-3}, {5, 1, 7}), std::numbers::pi / 4, {0, 1, 0});
+  above.angular_velocity = {0, 100, 30};
+  return {body_of(cube, {0.1e-3, 0.3e-3, 13e-3}, {4, 1, 8}), above};
+}
+std::vector<Body> three_rocks() {
+  std::vector<Body> rocks{body_of(rock(1, 7e-3), {-3.1e-3, 0.2e-3, 13e-3}, {4, 1, 8}),
+                          body_of(rock(2, 7e-3), {2.6e-3, -0.4e-3, 13.4e-3}, {3, 1, 8}),
+                          body_of(rock(3, 7e-3), {-0.2e-3, 0.3e-3, 18.2e-3}, {4, 0, 7})};
+  for (std::size_t n = 0; n < 3; ++n) rocks[n].angular_velocity = Vec3(100, -50, 30) * double(n + 1);
+  return rocks;
+}
+
+struct Jet : Bodies {
+  explicit Jet(std::vector<Body> them) : Bodies(box(), faces(), turbulent(), std::move(them), Vec3::Zero()) {}
+  static Grid box() { return {even(-13e-3, 13e-3, 22), even(-12e-3, 12e-3, 20), even(0, 28e-3, 24)}; }
+  static IncompressibleSetup turbulent() {
+    IncompressibleSetup s;
+    s.turbulence = TwoEquationModel::k_epsilon;
+    return s;
+  }
+  static std::array<Boundary, 6> faces() {
+    std::array<Boundary, 6> f = all(BoundaryKind::open);
+    f[4].kind = BoundaryKind::inflow;
+    f[4].state = [](const Vec3& x, double) {
+      BoundaryState s;
+      const double u = 100.0 * std::exp(-(x.x() * x.x() + x.y() * x.y()) / (0.005 * 0.005));
+      s.velocity[2] = static_cast<Real>(u);
+      s.k = static_cast<Real>(0.02 * u * u + 1e-3);
+      s.second = static_cast<Real>(0.09 * s.k * s.k / 0.01);
+      return s;
+    };
+    return f;
+  }
+  void run(int steps) {
+    for (int n = 0; n < steps; ++n) step(std::min(flow.stable_dt(0.9), 2e-5));
+  }
+};
+
+using Scene = std::vector<Body> (*)();
+const std::array<Scene, 3> kHeaps{two_cubes, cube_on_an_edge, three_rocks};
+
+TEST(BodiesInLiquid, BodiesInContactGiveTheSameBitsForAnyNumberOfThreads) {
+  const int threads = thread_count();
+  for (const Scene scene : kHeaps) {
+    set_thread_count(1);
+    Jet one(scene());
+    one.run(8);
+    int shared = 0;
+    for (const CutCell& c : one.mask.cut.cells) shared += c.walls > 1;
+    EXPECT_GT(shared, 5) << "bodies must share cells";
+    for (const int n : {2, 3, 4, 2, 2, 2, 2, 2}) {
+      set_thread_count(n);
+      Jet more(scene());
+      more.run(8);
+      for (int c = 0; c < 3; ++c)
+        for (int k = 0; k < one.grid.nz(); ++k)
+          for (int j = 0; j < one.grid.ny(); ++j)
+            for (int i = 0; i < one.grid.nx(); ++i)
+              ASSERT_EQ(one.flow.velocity_field(c)(i, j, k), more.flow.velocity_field(c)(i, j, k)) << n << " threads";
+      for (std::size_t b = 0; b < one.loads.size(); ++b) {
+        ASSERT_EQ(one.loads[b].force, more.loads[b].force) << n << " threads";
+        ASSERT_EQ(one.loads[b].torque, more.loads[b].torque) << n << " threads";
+      }
+    }
+  }
+  set_thread_count(threads);
+}
+
+TEST(BodiesInLiquid, BodiesInContactKeepMomentumAsOneDoes) {
+  for (const Scene scene : kHeaps) {
+    Jet jet(scene());
+    const Vec3 start = jet.flow.momentum();
+    jet.run(40);
+    const FlowLedger& l = jet.flow.ledger();
+    const double given = std::abs(l.momentum_through_boundaries.z()) + l.impulse_on_solids.norm();
+    printf("lost %g displaced %g\n", jet.lost(start) / given, l.displaced.norm() / given);
+    EXPECT_LT(jet.lost(start), (kSingle ? 1e-4 : 1e-8) * given);
+    EXPECT_LT(jet.flow.largest_divergence(jet.mask.cut), kSingle ? 1e-5 : 1e-13);
+    EXPECT_TRUE(jet.flow.finite());
+    double fastest = 0.0;
+    for (int c = 0; c < 3; ++c)
+      for (int k = 0; k < jet.grid.nz(); ++k)
+        for (int j = 0; j < jet.grid.ny(); ++j)
+          for (int i = 0; i < jet.grid.nx(); ++i)
+            fastest = std::max(fastest, std::abs(double(jet.flow.velocity_field(c)(i, j, k))));
+    printf("fastest %g\n", fastest);
+    EXPECT_LT(fastest, 200.0) << "nothing is faster than twice the jet";
+    for (const Load& load : jet.loads) EXPECT_LT(load.force.norm(), kDensity * 1e4 * 49e-6 * 4);
+  }
+}
+
+/// Drag of a cube in a slow stream once it has settled.
+double settled_drag(double courant, const Vec3& offset) {
+  std::array<Boundary, 6> faces = all(BoundaryKind::mirror);
+  faces[0].kind = BoundaryKind::inflow;
+  faces[0].state = [](const Vec3&, double) {
+    BoundaryState s;
+    s.velocity[0] = 1;
+    return s;
+  };
+  faces[1].kind = BoundaryKind::open;
+  IncompressibleSetup setup;
+  setup.viscosity = 0.01;  // Re = 40 with the edge of 0.4
+  Bodies b(Grid(even(-1, 2, 36), even(-1, 1, 24), even(-1, 1, 24)), faces, setup,
+           {body_of(make_box({0.4, 0.4, 0.4}), offset)}, {1, 0, 0});
+  const double end = 6.0;
+  while (b.time < end - 1e-9) b.step(std::min(courant / 0.9 * b.flow.stable_dt(0.9), end - b.time));
+  return b.loads[0].force.x() / (0.5 * kDensity * 0.16);
+}
+
+TEST(BodiesInLiquid, DragDoesNotDependOnTheStep) {
+  for (const Vec3& offset : {Vec3(0.01, 0.02, -0.03)}) {
+    const double large = settled_drag(0.9, offset), small = settled_drag(0.45, offset);
+    printf("drag %g %g\n", large, small);
+    EXPECT_NEAR(large / small, 1.0, 0.01);
+    EXPECT_GT(large, 1.0);
+    EXPECT_LT(large, 4.0);
+  }
+}
+
+TEST(BodiesInLiquid, AFluidAtRestPushesUpByItsWeight) {
+  const Vec3 g(3, -2, -9.81);
+  for (const Vec3& at : {Vec3(0, 0, 0), Vec3(0.012, 0.021, -0.017), Vec3(0.031, -0.029, 0.005), Vec3(0.0249, 0.04, -0.051)})
+    for (const int shape : {0, 1, 2}) {
+      IncompressibleSetup setup;
+      setup.acceleration = g;
+      Body body = shape == 0   ? body_of(make_box({0.7, 0.6, 0.8}), at)
+                  : shape == 1 ? turned(body_of(make_box({0.7, 0.6, 0.8}), at), 0.4, {1, 2, 3})
+                               : body_of(make_sphere(0.8), at);
+      Bodies b(Grid(even(-1, 1, 32), even(-1, 1, 32), even(-1, 1, 32)), all(BoundaryKind::wall), setup, {body}, Vec3::Zero());
+      for (int n = 0; n < 6; ++n) b.step(0.01);
+      const Vec3 weight = kDensity * body.shape.mass_properties().volume * g;
+      const Vec3 push = b.coupling.parts()[0].pressure;
+      printf("shape %d force %.5f moved %g\n", shape, -push.dot(weight) / weight.squaredNorm(), b.flow.kinetic_energy());
+      EXPECT_LT((push + weight).norm(), 0.01 * weight.norm()) << shape << " at " << at.transpose();
+      EXPECT_LT(b.coupling.parts()[0].friction.norm(), 1e-3 * weight.norm());
+    }
+}
+
+}  // namespace
+}  // namespace ejecta
