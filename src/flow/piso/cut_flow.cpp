@@ -57,6 +57,9 @@ Vec3 CutFlow::begin(const CutCells& cut, const std::array<ConstFieldView, 3>& u)
   }
   for (const GhostCell& g : cut.ghosts)
     if (cut.index(g.i, g.j, g.k) < 0) touch(g.i, g.j, g.k, Real(0));
+  solid_volume_ = 0;
+  for (const Cell& c : touched_)
+    solid_volume_ += (1.0 - double(carried_(c[0], c[1], c[2]))) * grid_.volume(c[0], c[1], c[2]);
   gradient_.resize(cut.cells.size());
   kept_.resize(cut.cells.size());
   sums_.resize(cut.cells.size());
@@ -186,6 +189,40 @@ void CutFlow::extend(const CutCells& cut, const std::array<FieldView, 3>& u, con
   for_each_index(static_cast<int>(cut.ghosts.size()), [&](int n) {
     const GhostCell& g = cut.ghosts[static_cast<std::size_t>(n)];
     for (std::size_t e = 0; e < 3; ++e) u[e](g.i, g.j, g.k) = values_[static_cast<std::size_t>(n)][e];
+  });
+}
+
+void CutFlow::extend_pressure(const CutCells& cut, FieldView p) {
+  const auto value = [&](const CutCell& c) {
+    const CutCell& carrier = cut.cells[static_cast<std::size_t>(c.carrier)];
+    const Cell from{carrier.i, carrier.j, carrier.k}, to{c.i, c.j, c.k};
+    Real sum = p(from[0], from[1], from[2]);
+    for (int d = 0; d < 3; ++d) {
+      const std::size_t s = static_cast<std::size_t>(d);
+      if (from[s] == to[s]) continue;
+      const Metrics m = grid_.metrics(d);
+      const int away = from[s] > to[s] ? 1 : -1;  // from the small cell
+      Cell beyond = from, face = from;
+      beyond[s] += away;
+      face[s] += away > 0;
+      if (cut.closed[s](face[0], face[1], face[2]) >= Real(1) || face[s] <= 0 || face[s] >= grid_.n(d)) continue;
+      const Real slope = (p(beyond[0], beyond[1], beyond[2]) - sum) * m.inv_distance[face[s]];
+      sum -= slope * std::abs(m.centre[from[s]] - m.centre[to[s]]);
+    }
+    return sum;
+  };
+  scalars_.resize(cut.cells.size());
+  for_each_index(static_cast<int>(cut.cells.size()), [&](int n) {
+    const CutCell& c = cut.cells[static_cast<std::size_t>(n)];
+    scalars_[static_cast<std::size_t>(n)] = c.carrier >= 0 ? value(c) : p(c.i, c.j, c.k);
+  });
+  for_each_index(static_cast<int>(cut.cells.size()), [&](int n) {
+    const CutCell& c = cut.cells[static_cast<std::size_t>(n)];
+    p(c.i, c.j, c.k) = scalars_[static_cast<std::size_t>(n)];
+  });
+  extend_to_ghosts(cut, p, scalars_, [&cut](const GhostCell& g) {
+    const int index = cut.index(g.i, g.j, g.k);
+    return index < 0 || cut.cells[static_cast<std::size_t>(index - 1)].carrier < 0;
   });
 }
 

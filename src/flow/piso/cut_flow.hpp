@@ -30,6 +30,7 @@ class CutFlow {
   /// Part of a cell's volume whose momentum it carries: 1 in plain fluid, 0 in solids.
   ConstFieldView carried() const { return carried_.view(); }
   Field& carried_field() { return carried_; }
+  double solid_volume() const { return solid_volume_; }  ///< m3 of the box without momentum
   void resume();  ///< carried_field() has been filled again
 
   /// Writes terms.out of cut cells, friction included, which is counted `weight` times (density, kg/m3) in
@@ -38,6 +39,10 @@ class CutFlow {
   Vec3 predict(CutCells& cut, const MomentumTerms& terms, const WallTurbulence& turbulence, double weight);
   /// Ghosts take what the stencils should see.
   void extend(const CutCells& cut, const std::array<FieldView, 3>& u, const WallTurbulence& turbulence);
+  /// Small cells take the pressure of their carrier, extended by the gradient beyond them, and cells in solids that of
+  /// their donors. What the corrections gave small cells would add up from step to step: their velocity, being
+  /// another's, never answers it.
+  void extend_pressure(const CutCells& cut, FieldView p);
   /// q on the faces of cut cells, of what flows through their open parts; closed ones move with the solid.
   void face_velocities(const CutCells& cut, const std::array<ConstFieldView, 3>& u_star, ConstFieldView p,
                        Real filter_time, const std::array<FieldView, 3>& q);
@@ -64,9 +69,11 @@ class CutFlow {
   const Grid& grid_;
   Real nu_;
   Field carried_;
+  double solid_volume_ = 0;
   std::vector<std::array<int, 3>> touched_;           // cells whose carried_ is not 1
   std::vector<std::array<Real, 3>> gradient_, kept_;  // of cut.cells
   std::vector<std::array<Real, 3>> values_;           // scratch of extend
+  std::vector<Real> scalars_;                         // scratch of extend_pressure
   std::vector<Real> open_velocity_;                   // of cut.faces while they are closed
   std::vector<Vec3> sums_;                            // scratch
 };

@@ -8,7 +8,6 @@
 
 #include "base/error.hpp"
 #include "base/stopwatch.hpp"
-#include "flow/cut_ghosts.hpp"
 #include "flow/piso/momentum.hpp"
 #include "flow/piso/projection.hpp"
 #include "flow/stencil.hpp"
@@ -214,7 +213,7 @@ void Incompressible::advance(double time, double dt, SolidMask& solids) {
   }
   if (!cut.empty()) boundaries_.fill_pressure(p_.view(), views(q_), true);  // of bodies across the faces of the box
   cut_flow_.press(cut, p_.view(), dt * setup_.density);
-  extend_to_ghosts(cut, p_.view(), ghost_values_, [&cut](const GhostCell& g) { return cut.index(g.i, g.j, g.k) < 0; });
+  cut_flow_.extend_pressure(cut, p_.view());
   for (std::size_t w = 0; w < cut.walls.size(); ++w)
     ledger_.impulse_on_solids += cut.pressure_impulse[w] + cut.friction_impulse[w];
 
@@ -228,7 +227,7 @@ void Incompressible::advance(double time, double dt, SolidMask& solids) {
 
 void Incompressible::book_boundaries(const BoundaryFlow& through, double dt) {
   const double factor = kStageWeight * dt * setup_.density;
-  ledger_.momentum_through_boundaries += factor * (through.momentum + setup_.acceleration * box_volume_);
+  ledger_.momentum_through_boundaries += factor * (through.momentum + setup_.acceleration * (box_volume_ - cut_flow_.solid_volume()));
   ledger_.mass_through_boundaries += factor * through.volume;
   ledger_.mass_in += factor * through.volume_in;
   book_pressure(p_.view(), kStageWeight, dt);

@@ -118,7 +118,6 @@ class Incompressible {
   double explicit_dt_ = 1e300, largest_viscosity_ = 0;  // of the last stable_dt()
   double convection_ = -1;                              // largest sum |u| / h, 1/s; negative: not known
   std::vector<BoundaryFlow> boundary_sums_;             // scratch
-  std::vector<Real> ghost_values_;                      // scratch
   double box_volume_ = 0;
   FlowTimes times_;
   FlowLedger ledger_;
