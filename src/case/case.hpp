@@ -96,8 +96,8 @@ struct StateSpec {
   std::optional<std::string> pressure;                 ///< Pa: gauge for incompressible, absolute otherwise
   std::optional<std::string> density;                  ///< kg/m3, compressible
   std::optional<std::string> temperature;              ///< K, compressible
-  std::optional<double> k;                             ///< m2/s2
-  std::optional<double> epsilon;                       ///< m2/s3
+  std::optional<std::string> k;                        ///< m2/s2
+  std::optional<std::string> epsilon;                  ///< m2/s3
 };
 
 /// [[boundary.z_min.patch]]: a disc on that face with a type of its own

@@ -29,6 +29,20 @@ void refine(GridSpec& grid, double factor) {
       if (axis.cells.size() > 1 || n > 1) n = std::max(1, static_cast<int>(std::lround(n * factor)));
 }
 
+std::vector<double> cell_centres(const AxisSpec& axis) {
+  std::vector<double> centres;
+  for (std::size_t b = 0; b < axis.cells.size(); ++b) {
+    double low = axis.points[b];
+    for (int i = 0; i < axis.cells[b]; ++i) {
+      const double width = cell_width(axis.points[b + 1] - axis.points[b], axis.cells[b],
+                                      axis.grading.empty() ? 1.0 : axis.grading[b], i);
+      centres.push_back(low + 0.5 * width);
+      low += width;
+    }
+  }
+  return centres;
+}
+
 double widest_cell(const AxisSpec& axis, double from, double to) {
   from = std::clamp(from, axis.points.front(), axis.points.back());
   to = std::clamp(to, axis.points.front(), axis.points.back());

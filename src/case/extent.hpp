@@ -1,6 +1,7 @@
 #pragma once
 #include <array>
 #include <optional>
+#include <vector>
 
 #include "base/vec.hpp"
 #include "case/case.hpp"
@@ -22,6 +23,8 @@ std::optional<Box> grid_box(const Case&);
 double cell_width(double length, int cells, double grading, int index);
 /// Cells of each block times `factor`, at least one; directions of a single cell stay as they are.
 void refine(GridSpec&, double factor);
+/// Middles of the cells of an axis, ascending, m.
+std::vector<double> cell_centres(const AxisSpec& axis);
 /// Largest width of the cells of an axis that touch [from, to], or the nearest cell's; m.
 double widest_cell(const AxisSpec& axis, double from, double to);
 
