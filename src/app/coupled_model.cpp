@@ -44,6 +44,8 @@ CoupledModel::CoupledModel(const Case& c)
   before_.resize(n);
   peak_speed_.assign(n, 0.0);
   if (flow_ && n > 0) coupling_.emplace(grid_, flow_->density(), c.environment.gravity);
+  for (const Body& b : particles_.bodies())
+    paces_.push_back(b.course ? b.course->pace(case_.run.end_time) : Course::Pace{});
   if (const auto jet = flow_ ? make_jet_source(c) : nullptr) dead_from_ = jet->dead_from();
   check_bodies();
   build_step();
@@ -61,7 +63,8 @@ void CoupledModel::place_bodies() {
     std::vector<Vec3> path;
     const double reach = case_.splitter.enabled ? nozzle.x() + case_.splitter.distance + case_.splitter.length
                                                 : body.position.x();
-    const double flight = body.velocity.x() > 0.0 ? (reach - body.position.x()) / body.velocity.x() : 0.0;
+    const double flight =
+        body.velocity.x() > 0.0 && !body.course ? (reach - body.position.x()) / body.velocity.x() : 0.0;
     for (int p = 0; flight > 0.0 && p <= 60; ++p) {
       const double t = flight * p / 60.0;
       path.push_back(body.position + t * body.velocity + 0.5 * t * t * gravity);
@@ -162,6 +165,7 @@ double CoupledModel::stable_dt(double time) const {
     if (!case_.run.time_step) dt = std::min(dt, flow_->stable_dt(time));
     if (coupling_ && !case_.run.time_step) {
       // A body must not cross a cell in one step.
+  if (flow_ && air_ && !case_.run.time_step) dt = std::min(dt, step_of_courses());
       double rate = 0.0;
       for (const Body& b : particles_.bodies())
         for (int d = 0; d < 3; ++d) {
@@ -189,6 +193,22 @@ void CoupledModel::advance(double time, double dt) {
   }
   watch_air(time + dt);
 }
+/// What is prescribed may be at rest now and fast within the step: its highest speed in the whole run must
+/// not take it over half a cell, and of a swing there are at least 40 steps.
+double CoupledModel::step_of_courses() const {
+  constexpr double change_in_step = 0.1;  // of the highest velocity
+  double rate = 0.0;
+  for (std::size_t n = 0; n < paces_.size(); ++n) {
+    const double around = paces_[n].spin * particles_.bodies()[n].shape.bounding_radius();
+    for (int d = 0; d < 3; ++d)
+      if (grid_.active(d))
+        rate = std::max(rate,
+                        (paces_[n].speed[d] + around) / grid_.axis(d).smallest() / (0.5 * case_.run.courant));
+    rate = std::max(rate, paces_[n].change / change_in_step);
+  }
+  return rate > 0.0 ? 1.0 / rate : 1e300;
+}
+
 
 void CoupledModel::watch_air(double time) {
   if (!air_ || case_.run.until != RunUntil::verdict || !coupling_) return;

@@ -207,8 +207,11 @@ struct BodySpec {
   std::optional<double> mass;     ///< kg, overrides
   Motion motion = Motion::free;
   Vec3 position{0, 0, 0};  ///< m, of the centre of mass at release
-  Vec3 velocity{0, 0, 0};  ///< m/s
-  Vec3 spin{0, 0, 0};      ///< rad/s, world axes
+  Vec3 velocity{0, 0, 0};  ///< m/s; of a formula its value at t = 0
+  Vec3 spin{0, 0, 0};      ///< rad/s, world axes; likewise
+  /// Formulas in t of a prescribed body, where its velocity or spin is no constant
+  std::optional<std::array<std::string, 3>> velocity_formula, spin_formula;
+  std::string path;  ///< prescribed: CSV file of its way, added to position and rotation_angle
   Vec3 rotation_axis{0, 0, 1};
   double rotation_angle = 0.0;  ///< rad
   double release_at = 0.0;      ///< s, body rests as placed until then

@@ -29,6 +29,7 @@ void sense_boundaries(const Case&, Findings&);
 void sense_turbulence(const Case&, Findings&);
 void sense_materials(const Case&, Findings&);
 void sense_shapes(const Case&, Findings&);
+void sense_motion(const Case&, Findings&);
 void sense_domain(const Case&, Findings&);
 void sense_places(const Case&, Findings&);
 void sense_overlaps(const Case&, Findings&);

@@ -107,7 +107,7 @@ Case parse_case(const std::string& text, const std::string& name, const std::vec
   fill_in(c);
   if (!syntax_errors && std::none_of(problems.begin(), problems.end(), concerns_a_section))
     for (Problem& p : check_sense(c, sections_of(problems))) {
-      p.place = locate(root, p.key);
+      if (!p.place.source) p.place = locate(root, p.key);  // else it is in another file
       if (p.severity == Severity::error) problems.push_back(std::move(p));
       else if (warnings) warnings->push_back(std::move(p));
     }
@@ -133,6 +133,7 @@ Case with_absolute_files(Case c) {
   }
   for (WallSpec& w : c.walls) resolve(w.file);
   for (MeasuredSpec& m : c.measured) resolve(m.file);
+    resolve(b.path);
   return c;
 }
 

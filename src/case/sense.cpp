@@ -13,13 +13,14 @@ struct Part {
   std::vector<std::string> sections;  ///< what it reads
 };
 
-const std::array<Part, 13> parts{{
+const std::array<Part, 14> parts{{
     {sense_run, {"run", "environment", "fluid", "flow", "body", "splitter"}},
     {sense_grid, {"grid"}},
     {sense_boundaries, {"boundary", "environment", "flow", "grid"}},
     {sense_turbulence, {"boundary", "initial", "flow", "grid"}},
     {sense_materials, {"material", "material_pair", "contact"}},
     {sense_shapes, {"body", "material", "launch", "run"}},
+    {sense_motion, {"body", "run"}},
     {sense_domain, {"domain", "flow"}},
     {sense_walls, {"wall", "material"}},
     {sense_sorter,
