@@ -41,8 +41,8 @@ type = "slip"
 type = "slip"
 [[initial]]
 velocity = ["2 m/s", "0 m/s", "0 m/s"]
-k = "= 0.1 + 10 * z"
-epsilon = "= 1 + 50 * x"
+k = "= 0.01 + 0.5 * z"
+epsilon = "= 0.5 + 5 * x"
 [boundary.x_min]
 type = "velocity"
 velocity = ["2 m/s", "0 m/s", "0 m/s"]
@@ -71,23 +71,23 @@ struct Channel {
 TEST(TurbulenceStates, AnInitialProfileIsTheFieldAtTheStart) {
   const Channel flow(channel(""));
   for (const double z : {1e-3, 5e-3, 11e-3, 19e-3})
-    EXPECT_NEAR(flow.k_at({9e-3, 1e-3, z}), 0.1 + 10 * z, 1e-6) << z;
+    EXPECT_NEAR(flow.k_at({9e-3, 1e-3, z}), 0.01 + 0.5 * z, 1e-8) << z;
 }
 
 /// Over three times the way through the first cells, the inlet's profile has replaced that of the start.
 TEST(TurbulenceStates, TheProfileOfAnInletArrivesInTheCellsBehindIt) {
   for (const char* model : {"k-epsilon", "k-omega-sst"}) {
-    Channel flow(channel("k = \"= 2 - 50 * z\"\nepsilon = \"= 0.01 + 0 * z\"", model));
+    Channel flow(channel("k = \"= 0.02 - 0.5 * z\"\nepsilon = \"= 0.3 + 0 * z\"", model));
     flow.advance(4e-3);
     for (const double z : {3e-3, 9e-3, 17e-3})
-      EXPECT_NEAR(flow.k_at({1e-3, 1e-3, z}), 2 - 50 * z, 0.1 * (2 - 50 * z)) << model << z;
+      EXPECT_NEAR(flow.k_at({1e-3, 1e-3, z}), 0.02 - 0.5 * z, 1e-3) << model << z;
   }
 }
 
 TEST(TurbulenceStates, AnInletFollowsItsFormulaInTime) {
-  Channel flow(channel("k = \"= 1 + 200 * t\"\nepsilon = \"0.01 m2/s3\""));
+  Channel flow(channel("k = \"= 0.01 + t\"\nepsilon = \"0.3 m2/s3\""));
   flow.advance(10e-3);
-  EXPECT_NEAR(flow.k_at({1e-3, 1e-3, 9e-3}), 2.9, 0.2) << "as at the start: 1";
+  EXPECT_NEAR(flow.k_at({1e-3, 1e-3, 9e-3}), 0.0195, 1e-3) << "as at the start: 0.01";
 }
 
 TEST(TurbulenceStates, PatchesAndOpenFacesHaveProfilesToo) {
@@ -127,8 +127,8 @@ TEST(TurbulenceStates, LessThanNothingIsStillAir) {
 TEST(TurbulenceStates, AGasStartsFromItsProfile) {
   Case c = parse_case(channel("", "k-omega-sst"), "channel");
   const godunov::GasState gas = godunov::gas_state(c, c.initial[0].state, {4e-3, 0, 8e-3}, 0.0);
-  EXPECT_NEAR(gas.k, 0.18, 1e-12);
-  EXPECT_NEAR(gas.e, 1.2 / (0.09 * 0.18), 1e-6);
+  EXPECT_NEAR(gas.k, 0.014, 1e-12);
+  EXPECT_NEAR(gas.e, 0.52 / (0.09 * 0.014), 1e-4);
 }
 
 }  // namespace
