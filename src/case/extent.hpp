@@ -36,11 +36,7 @@ double jet_height(const Case&);
 
 /// Half edge lengths of the box around a body in its own axes, m; zero for a mesh, which only the file knows.
 Vec3 half_extent(const BodySpec&);
-/// What a grid must resolve: smallest sphere or edge, m; zero when unknown.
-double smallest_feature(const BodySpec&);
 /// Where the body is when it matters: at the start, or on the jet's axis if it comes from the belt, m.
 Vec3 place_of_interest(const Case&, const BodySpec&);
-/// Fewest cells across the smallest feature of a body, over the axes that have more than one cell.
-double cells_across(const Case&, const BodySpec&);
 
 }  // namespace ejecta

@@ -13,7 +13,7 @@ struct Part {
   std::vector<std::string> sections;  ///< what it reads
 };
 
-const std::array<Part, 14> parts{{
+const std::array<Part, 13> parts{{
     {sense_run, {"run", "environment", "fluid", "flow", "body", "splitter"}},
     {sense_grid, {"grid"}},
     {sense_boundaries, {"boundary", "environment", "flow", "grid"}},
@@ -26,7 +26,6 @@ const std::array<Part, 14> parts{{
     {sense_sorter,
      {"run", "environment", "flow", "grid", "boundary", "valve", "jet", "launch", "splitter", "body"}},
     {sense_expectations, {"expect", "convergence", "exact", "flow"}},
-    {sense_places, {"grid", "flow", "body", "launch"}},
     {sense_overlaps, {"body", "launch"}},
     {sense_records, {"grid", "flow", "probe", "line", "slice"}},
 }};
