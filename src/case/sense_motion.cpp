@@ -14,6 +14,7 @@ namespace ejecta {
 namespace {
 
 constexpr int looks = 1000;  // at a formula over the run
+constexpr std::uintmax_t largest_file = 64 << 20;
 
 constexpr const char* formula_example = R"x(velocity = ["= 0.2 * cos(100 * t)", "0 m/s", "0 m/s"])x";
 
@@ -54,6 +55,11 @@ void check_path(const Case& c, const BodySpec& b, const std::string& key, Findin
   if (!std::filesystem::is_regular_file(file, ignored))
     return found.error(path_key, fmt::format("there is no file \"{}\"", file),
                        "a file, relative to the folder of the case", "path = \"path.csv\"");
+  // Devices and the like have no size: they could be read for ever.
+  if (const auto size = std::filesystem::file_size(file, ignored); size == 0 || size > largest_file)
+    return found.error(path_key,
+                       fmt::format("\"{}\" is {}", file, size == 0 ? "empty" : "no path: it is too large"),
+                       "a few lines of times and places", "path = \"path.csv\"");
   const std::size_t before = found.list.size();
   const PathTable table = read_path_file(file, found.list);
   for (std::size_t n = before; n < found.list.size(); ++n) found.list[n].key = path_key;
