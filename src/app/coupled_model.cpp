@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "app/air_limits.hpp"
+#include "app/body_checks.hpp"
 #include "app/jet_source.hpp"
 #include "base/error.hpp"
 #include "base/state_reader.hpp"
@@ -45,6 +46,8 @@ CoupledModel::CoupledModel(const Case& c)
   before_.resize(n);
   peak_speed_.assign(n, 0.0);
   if (flow_ && n > 0) coupling_.emplace(grid_, coupling_setup());
+  for (const Body& b : particles_.bodies())
+    paces_.push_back(b.course ? b.course->pace(case_.run.end_time) : Course::Pace{});
   if (const auto jet = flow_ ? make_jet_source(c) : nullptr) dead_from_ = jet->dead_from();
   check_bodies();
   build_step();
@@ -73,13 +76,15 @@ void CoupledModel::place_bodies() {
     std::vector<Vec3> path;
     const double reach = case_.splitter.enabled ? nozzle.x() + case_.splitter.distance + case_.splitter.length
                                                 : body.position.x();
-    const double flight = body.velocity.x() > 0.0 ? (reach - body.position.x()) / body.velocity.x() : 0.0;
+    const double flight =
+        body.velocity.x() > 0.0 && !body.course ? (reach - body.position.x()) / body.velocity.x() : 0.0;
     for (int p = 0; flight > 0.0 && p <= 60; ++p) {
       const double t = flight * p / 60.0;
       path.push_back(body.position + t * body.velocity + 0.5 * t * t * gravity);
     }
     undisturbed_.push_back(path);
   }
+  if (case_.launch.enabled) particles_.require_apart();
   if (!case_.splitter.enabled || particles_.bodies().empty()) return;
   const double edge_x = nozzle.x() + case_.splitter.distance;
   double height;
@@ -102,23 +107,9 @@ void CoupledModel::place_bodies() {
 
 void CoupledModel::check_bodies() const {
   if (!flow_) return;
-  for (const Body& body : particles_.bodies()) {
-    const double size = 2.0 * body.shape.bounding_radius();
-    for (int d = 0; d < 3; ++d)
-      if (grid_.active(d) && size > grid_.axis(d).length())
-        throw InputError(
-            fmt::format("body \"{}\" ({:.3g} mm across) is larger than the box in {} ({:.3g} mm)", body.name,
-                        size * 1e3, "xyz"[d], grid_.axis(d).length() * 1e3));
-    double finest = 0.0;
-    for (int d = 0; d < 3; ++d)
-      if (grid_.active(d)) finest = std::max(finest, grid_.axis(d).smallest());
-    const double across = body.shape.smallest_feature() / finest;
-    if (across < 4.0)
-      throw InputError(
-          fmt::format("body \"{}\": {:.1f} cells across its smallest feature ({:.3g} mm) even where the grid "
-                      "is finest ({:.3g} mm); at least 4 are needed, 8 recommended",
-                      body.name, across, body.shape.smallest_feature() * 1e3, finest * 1e3));
-  }
+  std::vector<Problem> problems = ejecta::check_bodies(case_, grid_, particles_.bodies());
+  std::erase_if(problems, [](const Problem& p) { return p.severity != Severity::error; });
+  if (!problems.empty()) throw InputError(render(problems));
 }
 
 void CoupledModel::build_step() {
@@ -187,6 +178,7 @@ double CoupledModel::stable_dt(double time) const {
   } else if (!case_.run.time_step) {
     dt = std::min(dt, kFlightStep);
   }
+  if (flow_ && air_ && !case_.run.time_step) dt = std::min(dt, step_of_courses());
   return dt;
 }
 
@@ -211,6 +203,22 @@ void CoupledModel::watch_air(double time) {
     if (time > dead_from_ && energy < kDeadAir * peak_energy_) air_ = false;
   }
   if (time > dead_from_ && !coupling_->any_inside(particles_.bodies())) air_ = false;
+}
+
+/// What is prescribed may be at rest now and fast within the step: its highest speed in the whole run must
+/// not take it over half a cell, and of a swing there are at least 40 steps.
+double CoupledModel::step_of_courses() const {
+  constexpr double change_in_step = 0.1;  // of the highest velocity
+  double rate = 0.0;
+  for (std::size_t n = 0; n < paces_.size(); ++n) {
+    const double around = paces_[n].spin * particles_.bodies()[n].shape.bounding_radius();
+    for (int d = 0; d < 3; ++d)
+      if (grid_.active(d))
+        rate = std::max(rate,
+                        (paces_[n].speed[d] + around) / grid_.axis(d).smallest() / (0.5 * case_.run.courant));
+    rate = std::max(rate, paces_[n].change / change_in_step);
+  }
+  return rate > 0.0 ? 1.0 / rate : 1e300;
 }
 
 bool CoupledModel::finished() const {

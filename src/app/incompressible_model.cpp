@@ -183,7 +183,10 @@ class IncompressibleModel : public FlowModel {
         for (int k = 0; k < grid_.nz(); ++k)
           for (int j = 0; j < grid_.ny(); ++j)
             for (int i = 0; i < grid_.nx(); ++i)
-              if (inside(*spec, grid_.centre(i, j, k))) t->set_at(i, j, k, formula.k, formula.second);
+              if (const Vec3 x = grid_.centre(i, j, k); inside(*spec, x)) {
+                const StateFormula::Turbulence at = formula.turbulence_at(x, 0.0);
+                t->set_at(i, j, k, at.k, at.second);
+              }
     }
     const auto velocity = [&](const Vec3& x) {
       Vec3 v{0, 0, 0};

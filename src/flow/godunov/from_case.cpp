@@ -68,9 +68,9 @@ GasState gas_state(const Case& c, const StateSpec& spec, const Vec3& x, double t
   if (spec.velocity)
     for (int d = 0; d < 3; ++d)
       s.velocity[d] = Expression((*spec.velocity)[static_cast<std::size_t>(d)])(x.x(), x.y(), x.z(), t);
-  s.k = spec.k.value_or(kStillK);
+  s.k = std::max(value(spec.k, kStillK, x, t), 0.0);
   const double still = double(k_epsilon::kCmu) * s.k * s.k * s.density / c.fluid.viscosity;
-  s.e = spec.epsilon.value_or(c.fluid.viscosity > 0.0 ? still : 0.0);
+  s.e = std::max(value(spec.epsilon, c.fluid.viscosity > 0.0 ? still : 0.0, x, t), 0.0);
   if (c.flow.turbulence == TurbulenceModel::k_omega_sst) s.e = omega_of(s.k, s.e);
   return s;
 }
