@@ -98,8 +98,9 @@ void RunDirectory::write_manifest(const nlohmann::ordered_json& manifest) const 
 }
 
 void RunDirectory::write_result(const nlohmann::ordered_json& result) const {
+  write_file(path_ / "result.json",
+             json_text(result) + '\n');  // what is no number becomes null: the rest counts
   check_finite(result, "");
-  write_file(path_ / "result.json", json_text(result) + '\n');
 }
 
 }  // namespace ejecta::output
