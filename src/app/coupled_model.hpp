@@ -60,10 +60,12 @@ class CoupledModel {
   void restore_numbers(const std::vector<std::vector<double>>& numbers, double time);
 
  private:
+  void add_grid_walls();
   void place_bodies();
   void check_bodies() const;
   void build_step();
   void watch_air(double time);
+  double step_of_bodies(double time, double dt) const;
 
   const Case case_;  // copies of bodies written out
   Grid grid_;

@@ -2,9 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "app/air_limits.hpp"
+#include "app/boundary_change.hpp"
 #include "app/grid_sampler.hpp"
 #include "app/incompressible_states.hpp"
 #include "app/round_jet.hpp"
@@ -34,30 +36,24 @@ class IncompressibleModel : public FlowModel {
                          const Vec3& x, double t) {
         return Vec3(f[0](x.x(), x.y(), x.z(), t), f[1](x.x(), x.y(), x.z(), t), f[2](x.x(), x.y(), x.z(), t));
       };
-    std::array<Boundary, 6> faces;
     for (int f = 0; f < 6; ++f)
-      faces[static_cast<std::size_t>(f)] = make_boundary(c, grid, still_, jet_.get(), f);
-    flow_ = std::make_unique<Incompressible>(grid, faces, setup);
+      faces_[static_cast<std::size_t>(f)] = make_boundary(c, grid, still_, jet_.get(), f);
+    flow_ = std::make_unique<Incompressible>(grid, faces_, setup);
+    if (jet_) faces_[static_cast<std::size_t>(jet_->face())].varies = false;  // has a limit of its own
     initialise();
   }
 
   double stable_dt(double time) override {
-    double dt = std::min(flow_->stable_dt(case_.run.courant), case_.run.time_step_max);
-    if (!jet_) return dt;
-    dt = std::min(dt, kStepOfPulse * case_.valve.duration);
-    // A jet that starts must not outrun the step that lets it in.
-    const double h = width_inside(grid_, jet_->face());
-    for (int n = 0; n < 60; ++n) {
-      const double limit = case_.run.courant * h / std::max(jet_->fastest(time + dt), 1e-30);
-      if (limit >= dt) break;
-      dt = std::max(limit, 0.5 * dt);
-    }
-    return dt;
+    double dt = step_of_flow(time);
+    if (!std::isfinite(dt)) report_divergence(time);
+    return step_of_boundaries(time, step_of_jet(time, std::min(dt, case_.run.time_step_max)));
   }
   double courant(double dt) const override { return flow_->courant(dt); }
   void advance(double time, double dt, SolidMask& solids) override {
     flow_->advance(time, dt, solids);
     last_time_ = time + dt;
+    last_dt_ = dt;
+    resumed_step_ = 0.0;
   }
   double density() const override { return still_.density; }
   std::array<ConstFieldView, 3> velocity() const override { return flow_->velocity(); }
@@ -156,6 +152,9 @@ class IncompressibleModel : public FlowModel {
     for (const Vec3& v : {l.momentum_through_boundaries, l.impulse_on_solids, momentum_at_start_})
       n.insert(n.end(), {v.x(), v.y(), v.z()});
     n.insert(n.end(), {l.mass_through_boundaries, l.mass_in, l.leak});
+    // The velocity before the last step is not stored, only what it says of the next one.
+    const double next = last_dt_ > 0.0 ? flow_->stable_dt(case_.run.courant, last_dt_) : resumed_step_;
+    n.push_back(next);
     return n;
   }
   void restore_numbers(std::span<const double> n, double time) override {
@@ -163,12 +162,58 @@ class IncompressibleModel : public FlowModel {
     StateReader in(n, "ledger of the air");
     for (Vec3* v : {&l.momentum_through_boundaries, &l.impulse_on_solids, &momentum_at_start_})
       *v = in.vec3();
-    for (double* v : {&l.mass_through_boundaries, &l.mass_in, &l.leak}) *v = in.number();
+    for (double* v : {&l.mass_through_boundaries, &l.mass_in, &l.leak, &resumed_step_}) *v = in.number();
     in.end();
     flow_->resume(time);
   }
 
  private:
+  /// What the flow itself allows.
+  double step_of_flow(double time) {
+    const double courant = case_.run.courant;
+    if (last_dt_ > 0.0) return flow_->stable_dt(courant, last_dt_);
+    if (resumed_step_ == 0.0)
+      return flow_->first_step(time, courant, step_of_jet(time, case_.run.time_step_max));
+    flow_->stable_dt(courant);  // sets what advance() needs
+    return resumed_step_;
+  }
+  /// A jet that starts must not outrun the step that lets it in.
+  double step_of_jet(double time, double dt) const {
+    if (!jet_) return dt;
+    dt = std::min(dt, kStepOfPulse * case_.valve.duration);
+    const double h = width_inside(grid_, jet_->face());
+    for (int n = 0; n < 60; ++n) {
+      const double limit = case_.run.courant * h / std::max(jet_->fastest(time + dt), 1e-30);
+      if (limit >= dt) break;
+      dt = std::max(limit, 0.5 * dt);
+    }
+    return dt;
+  }
+  /// Nor must a boundary that is switched on; where it is, what the flow behind it does is tried as well.
+  double step_of_boundaries(double time, double dt) {
+    if (std::none_of(faces_.begin(), faces_.end(), [](const Boundary& b) { return b.varies; })) return dt;
+    const double courant = case_.run.courant;
+    dt = std::min(dt, kStepOfPulse * case_.run.end_time);  // what comes and goes must not be stepped over
+    BoundaryChange change = boundary_change(grid_, faces_, time, dt);
+    for (int n = 0; n < 100 && change.reached > courant; ++n) {
+      dt *= 0.5;
+      change = boundary_change(grid_, faces_, time, dt);
+    }
+    if (change.changed > 0.25 * courant)
+      for (int n = 0; n < 100 && !(flow_->try_step(time, dt) <= 1.5 * courant); ++n) dt *= 0.5;
+    return dt;
+  }
+  [[noreturn]] void report_divergence(double time) const {
+    Vec3 x{0, 0, 0};
+    std::string where;
+    if (!flow_->finite(&x))
+      where = fmt::format(" near x, y, z = {:.4g}, {:.4g}, {:.4g} mm", x.x() * 1e3, x.y() * 1e3, x.z() * 1e3);
+    throw DivergedError(fmt::format(
+        "the flow diverged at t = {:.6g} s{}: a velocity or an eddy viscosity is no number; try a "
+        "smaller run.courant, a smoother grid there, or a longer valve.rise_time",
+        time, where));
+  }
+
   void initialise() {
     std::vector<std::pair<const InitialSpec*, StateFormula>> regions;
     for (const InitialSpec& i : case_.initial) regions.emplace_back(&i, StateFormula(i.state, still_));
@@ -206,9 +251,11 @@ class IncompressibleModel : public FlowModel {
   const Grid& grid_;
   StillAir still_;
   std::unique_ptr<JetInlet> jet_;
+  std::array<Boundary, 6> faces_;
   std::unique_ptr<Incompressible> flow_;
   Vec3 momentum_at_start_{0, 0, 0};
-  double last_time_ = 0;
+  double last_time_ = 0, last_dt_ = 0;  ///< s, of the last step of this process
+  double resumed_step_ = 0;             ///< s, what the flow allowed when the checkpoint was written
 };
 
 }  // namespace

@@ -70,10 +70,15 @@ Boundary make_boundary(const Case& c, const Grid& grid, const StillAir& air, con
       b.kind = BoundaryKind::open;
       b.total_pressure = spec.type == BoundaryType::total_pressure;
       const double ambient = c.environment.pressure;
-      if (b.total_pressure && spec.total_pressure > 0.0)
-        b.pressure = (spec.total_pressure - ambient) / air.density;
-      if (spec.state.pressure) b.pressure = Expression(*spec.state.pressure)(0, 0, 0, 0) / air.density;
-      b.state = [=](const Vec3&, double) { return constant_turbulence({}, formula.k, formula.second); };
+      const double stagnation =
+          b.total_pressure && spec.total_pressure > 0.0 ? spec.total_pressure - ambient : 0.0;
+      const auto given = spec.state.pressure ? std::optional(Expression(*spec.state.pressure)) : std::nullopt;
+      b.varies = given && given->uses_time();
+      b.state = [=](const Vec3& x, double t) {
+        BoundaryState s;
+        s.pressure = static_cast<Real>((given ? (*given)(x.x(), x.y(), x.z(), t) : stagnation) / air.density);
+        return constant_turbulence(s, formula.k, formula.second);
+      };
       if (!spec.patches.empty())
         throw InputError(fmt::format(
             "boundary.{}: patches of an incompressible flow need a face of type wall, velocity or jet",
