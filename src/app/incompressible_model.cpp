@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "app/air_limits.hpp"
 #include "app/boundary_change.hpp"
@@ -13,6 +14,7 @@
 #include "base/error.hpp"
 #include "base/state_reader.hpp"
 #include "case/expression.hpp"
+#include "case/initial.hpp"
 #include "flow/piso/incompressible.hpp"
 
 namespace ejecta {
@@ -214,34 +216,35 @@ class IncompressibleModel : public FlowModel {
         time, where));
   }
 
+  /// What the regions that hold a cell say together.
+  struct Start {
+    StateFormula formula;
+    Expression pressure;
+  };
   void initialise() {
-    std::vector<std::pair<const InitialSpec*, StateFormula>> regions;
-    for (const InitialSpec& i : case_.initial) regions.emplace_back(&i, StateFormula(i.state, still_));
-    const auto inside = [](const InitialSpec& i, const Vec3& x) {
-      return !i.box || ((x - (*i.box)[0]).minCoeff() >= 0.0 && ((*i.box)[1] - x).minCoeff() >= 0.0);
+    std::map<std::vector<int>, Start> starts;
+    const auto start_at = [&](const Vec3& x) -> const Start& {
+      const std::vector<int> regions = regions_at(case_, x);
+      const auto known = starts.find(regions);
+      if (known != starts.end()) return known->second;
+      const StateSpec spec = merged(case_, regions);
+      return starts
+          .emplace(regions, Start{StateFormula(spec, still_),
+                                  spec.pressure ? Expression(*spec.pressure) : Expression()})
+          .first->second;
     };
     if (TwoEquation* t = flow_->turbulence()) {
       t->initialise(still_.k, still_.second);
-      for (const auto& [spec, formula] : regions)
-        for (int k = 0; k < grid_.nz(); ++k)
-          for (int j = 0; j < grid_.ny(); ++j)
-            for (int i = 0; i < grid_.nx(); ++i)
-              if (inside(*spec, grid_.centre(i, j, k))) t->set_at(i, j, k, formula.k, formula.second);
+      for (int k = 0; k < grid_.nz(); ++k)
+        for (int j = 0; j < grid_.ny(); ++j)
+          for (int i = 0; i < grid_.nx(); ++i) {
+            const StateFormula& f = start_at(grid_.centre(i, j, k)).formula;
+            t->set_at(i, j, k, f.k, f.second);
+          }
     }
-    const auto velocity = [&](const Vec3& x) {
-      Vec3 v{0, 0, 0};
-      for (const auto& [spec, formula] : regions)
-        if (formula.has_velocity && inside(*spec, x)) v = formula.at(x, 0.0);
-      return v;
-    };
-    std::vector<std::pair<const InitialSpec*, Expression>> pressures;
-    for (const InitialSpec& i : case_.initial)
-      if (i.state.pressure) pressures.emplace_back(&i, Expression(*i.state.pressure));
+    const auto velocity = [&](const Vec3& x) { return start_at(x).formula.at(x, 0.0); };
     const auto pressure = [&](const Vec3& x) {
-      double p = 0.0;
-      for (const auto& [spec, formula] : pressures)
-        if (inside(*spec, x)) p = formula(x.x(), x.y(), x.z(), 0.0) / still_.density;
-      return p;
+      return start_at(x).pressure(x.x(), x.y(), x.z(), 0.0) / still_.density;
     };
     flow_->initialise(velocity, pressure, 0.0);
     momentum_at_start_ = flow_->momentum();

@@ -169,6 +169,28 @@ position = ["0 mm", "0 mm", "40 mm"]
   EXPECT_LT(out.max_courant, 2.0);
 }
 
+/// Boundaries that differ from the gas at rest, as strongly as they may. (compressible-piso under 1 kPa alone
+/// is not here: its inlet answers its own waves when a step is many of the time sound needs to cross a cell.)
+TEST(FromRest, GasIsNotOutrun) {
+  const auto with = [](const char* solver, const std::string& inlet, double end_ms) {
+    const std::string ends =
+        "[boundary.x_min]\n" + inlet + "\n[boundary.x_max]\ntype = \"pressure-outlet\"\n";
+    return run(parse_case(duct(solver, ends, end_ms), "duct"));
+  };
+  for (const char* solver : {"compressible", "compressible-piso"}) {
+    for (const char* p : {"50 kPa", "10 MPa"}) {
+      const std::string inlet = fmt::format(
+          "type = \"total-pressure\"\ntotal_pressure = \"{} gauge\"\ntotal_temperature = \"298.15 K\"", p);
+      EXPECT_LT(with(solver, inlet, 1.0).max_courant, 1.5 * 0.9) << solver << ' ' << p;
+    }
+    for (const char* v : {"1 m/s", "100 m/s", "1000 m/s", "3000 m/s", "= 1000 * step(t - 0.0001)"}) {
+      const std::string inlet =
+          fmt::format("type = \"velocity\"\nvelocity = [\"{}\", \"0 m/s\", \"0 m/s\"]", v);
+      EXPECT_LT(with(solver, inlet, 0.3).max_courant, 1.5 * 0.9) << solver << ' ' << v;
+    }
+  }
+}
+
 TEST(FromRest, NoNumberStopsTheRunAtOnce) {
   const Case c = parse_case(duct("incompressible", kBlown), "duct");
   CoupledModel model(c);
@@ -179,8 +201,10 @@ TEST(FromRest, NoNumberStopsTheRunAtOnce) {
 }
 
 /// What is needed to choose the next step is in the checkpoint.
-TEST(FromRest, AResumedRunTakesTheSameSteps) {
-  const Case c = parse_case(duct("incompressible", kBlown), "duct");
+class FromRestWith : public testing::TestWithParam<const char*> {};
+
+TEST_P(FromRestWith, AResumedRunTakesTheSameSteps) {
+  const Case c = parse_case(duct(GetParam(), kBlown), "duct");
   CoupledModel whole(c), resumed(c);
   double t = 0.0;
   for (int n = 0; n < 5; ++n) {
@@ -202,6 +226,9 @@ TEST(FromRest, AResumedRunTakesTheSameSteps) {
     t += dt;
   }
 }
+
+INSTANTIATE_TEST_SUITE_P(Solvers, FromRestWith,
+                         testing::Values("incompressible", "compressible", "compressible-piso"));
 
 }  // namespace
 }  // namespace ejecta
