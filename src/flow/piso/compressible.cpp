@@ -69,8 +69,8 @@ struct IncrementKernel {
   }
 };
 
-/// What a pressure that is only coming up will do is seen in what the last step did: dt (r + g dt) = 1 with the
-/// velocity's growth in it. One that made |u| smaller does not count.
+/// What a pressure that is only coming up will do is seen in what the last step did: dt (r + g dt) = 1 with
+/// the velocity's growth in it. One that made |u| smaller does not count.
 struct GrowthKernel {
   BlockView<const Real> w, start;  ///< primitive now, conserved at the beginning of the step
   const Real* inside_solid;
