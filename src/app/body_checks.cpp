@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "app/flow_model.hpp"
+#include "app/grid_walls.hpp"
 #include "base/error.hpp"
 #include "case/copies.hpp"
 #include "case/extent.hpp"
@@ -19,6 +20,7 @@ namespace {
 
 constexpr double cells_needed = 4.0, cells_advised = 8.0;  // across the smallest feature (Hager 2014: 8)
 constexpr double kTouch = 1e-6;         // of a body: that much it may stick out by rounding
+constexpr double kRest = 1e-3;          // likewise into a wall on which it rests (Particles::require_apart)
 constexpr double kRounding = 1 - 1e-9;  // of counts of cells
 constexpr double kHuge = 1.0;           // m: no particle of a sorter, but a mesh whose units were forgotten
 
@@ -105,6 +107,7 @@ class BodyCheck {
                          spec.type == BoundaryType::periodic;
     const bool wall = spec.type == BoundaryType::wall || spec.type == BoundaryType::moving_wall;
     const bool held = body_.motion != Motion::free;
+    if (wall && depth <= kRest * body_.shape.bounding_radius()) return;
     const std::string inside = fmt::format("a place at least {} further in", mm(depth));
     if (lets_air_in(spec) && !goes_on)
       problem(
@@ -158,13 +161,16 @@ double widest_around(const Axis& axis, double from, double to) {
   return widest;
 }
 
-/// A body from the belt against those that are placed: all others were compared when the case was read.
-void check_belt(const Case& c, std::vector<Problem>& found) {
+/// A body from the belt against those that are placed and all walls: all others were compared when the case
+/// was read.
+void check_belt(const Case& c, const Grid& grid, std::vector<Problem>& found) {
   const auto belt =
       std::find_if(c.bodies.begin(), c.bodies.end(), [](const BodySpec& b) { return b.on_belt; });
-  if (!c.launch.enabled || belt == c.bodies.end() || c.bodies.size() + c.walls.size() < 2) return;
+  if (!c.launch.enabled || belt == c.bodies.end()) return;
   const int n = static_cast<int>(belt - c.bodies.begin());
   Particles particles = make_particles(c);
+  for (const Wall& wall : grid_walls(c, grid, particles)) particles.add(wall);
+  if (particles.bodies().size() + particles.walls().size() < 2) return;
   try {
     const Body& body = particles.bodies()[static_cast<std::size_t>(n)];
     const FlightState s = launch_state(c.launch, c.jet.nozzle, c.environment.gravity, 0.0);
@@ -247,10 +253,11 @@ std::vector<Problem> check_bodies(const Case& original) {
                        .severity = Severity::warning});
   }
   if (!found.empty() || !flows) return found;
-  found = check_bodies(c, make_grid(c), bodies);
+  const Grid grid = make_grid(c);
+  found = check_bodies(c, grid, bodies);
   if (std::none_of(found.begin(), found.end(),
                    [](const Problem& p) { return p.severity == Severity::error; }))
-    check_belt(c, found);
+    check_belt(c, grid, found);
   return found;
 }
 

@@ -7,6 +7,7 @@
 
 #include "app/air_limits.hpp"
 #include "app/body_checks.hpp"
+#include "app/grid_walls.hpp"
 #include "app/jet_source.hpp"
 #include "base/error.hpp"
 #include "base/state_reader.hpp"
@@ -36,6 +37,8 @@ CoupledModel::CoupledModel(const Case& c)
       flow_(make_flow_model(case_, grid_)),
       particles_(make_particles(case_)) {
   air_ = flow_ != nullptr;
+  if (flow_)
+    for (const Wall& wall : grid_walls(case_, grid_, particles_)) particles_.add(wall);
   place_bodies();
   const std::size_t n = particles_.bodies().size();
   loads_.resize(n);
@@ -84,7 +87,8 @@ void CoupledModel::place_bodies() {
     }
     undisturbed_.push_back(path);
   }
-  if (case_.launch.enabled) particles_.require_apart();
+  // What make_particles() could not look at: bodies from the belt, and the walls of the grid.
+  if (flow_ || case_.launch.enabled) particles_.require_apart();
   if (!case_.splitter.enabled || particles_.bodies().empty()) return;
   const double edge_x = nozzle.x() + case_.splitter.distance;
   double height;
@@ -164,17 +168,7 @@ double CoupledModel::stable_dt(double time) const {
   if (case_.run.time_step) dt = *case_.run.time_step;
   if (flow_ && air_) {
     if (!case_.run.time_step) dt = std::min(dt, flow_->stable_dt(time));
-    if (coupling_ && !case_.run.time_step) {
-      // A body must not cross a cell in one step.
-      double rate = 0.0;
-      for (const Body& b : particles_.bodies())
-        for (int d = 0; d < 3; ++d) {
-          const double speed =
-              std::abs(b.velocity[d]) + b.angular_velocity.norm() * b.shape.bounding_radius();
-          if (grid_.active(d)) rate = std::max(rate, speed / grid_.axis(d).smallest());
-        }
-      if (rate > 0.0) dt = std::min(dt, 0.5 * case_.run.courant / rate);
-    }
+    if (coupling_ && !case_.run.time_step) dt = std::min(dt, step_of_bodies(time, dt));
   } else if (!case_.run.time_step) {
     dt = std::min(dt, kFlightStep);
   }
@@ -182,9 +176,33 @@ double CoupledModel::stable_dt(double time) const {
   return dt;
 }
 
+/// A body must not cross half a cell in one step of at most dt, with the velocity it has, will have been
+/// given by then, or gains from gravity and the fluid.
+double CoupledModel::step_of_bodies(double time, double dt) const {
+  const double way = 0.5 * case_.run.courant;  // in cells
+  double rate = 0.0;                           // 1/s: rate dt + growth dt^2 = way
+  for (std::size_t n = 0; n < loads_.size(); ++n) {
+    const Body& b = particles_.bodies()[n];
+    const bool waits = time < std::max(b.release_at, b.enters_at.value_or(0.0));
+    const bool starts = waits && time + dt > std::max(b.release_at, b.enters_at.value_or(0.0));
+    const Vec3 velocity = starts ? case_.bodies[n].velocity : b.velocity;
+    const double spin = (starts ? case_.bodies[n].spin : b.angular_velocity).norm();
+    const bool falls = b.motion == Motion::free && (starts || !waits);
+    const Vec3 gain = falls ? Vec3(case_.environment.gravity + loads_[n].force / b.mass) : Vec3(0, 0, 0);
+    for (int d = 0; d < 3; ++d) {
+      if (!grid_.active(d)) continue;
+      const double h = grid_.axis(d).smallest();
+      const double r = (std::abs(velocity[d]) + spin * b.shape.bounding_radius()) / h;
+      rate = std::max(rate, 0.5 * (r + std::sqrt(r * r + 4.0 * way * std::abs(gain[d]) / h)));
+    }
+  }
+  return rate > 0.0 ? way / rate : dt;
+}
+
 void CoupledModel::advance(double time, double dt) {
   if (flow_ && air_) {
     courant_ = flow_->courant(dt);
+    if (!std::isfinite(courant_)) require_finite(time);
     max_courant_ = std::max(max_courant_, courant_);
   }
   for (Operator& op : step_) {

@@ -69,6 +69,7 @@ class CoupledModel {
   void build_step();
   void watch_air(double time);
   double step_of_courses() const;
+  double step_of_bodies(double time, double dt) const;
 
   const Case case_;  // copies of bodies written out
   Grid grid_;

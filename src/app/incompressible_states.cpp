@@ -86,10 +86,15 @@ Boundary make_boundary(const Case& c, const Grid& grid, const StillAir& air, con
       b.kind = BoundaryKind::open;
       b.total_pressure = spec.type == BoundaryType::total_pressure;
       const double ambient = c.environment.pressure;
-      if (b.total_pressure && spec.total_pressure > 0.0)
-        b.pressure = (spec.total_pressure - ambient) / air.density;
-      if (spec.state.pressure) b.pressure = Expression(*spec.state.pressure)(0, 0, 0, 0) / air.density;
-      b.state = [=](const Vec3& x, double t) { return with_turbulence({}, formula.turbulence_at(x, t)); };
+      const double stagnation =
+          b.total_pressure && spec.total_pressure > 0.0 ? spec.total_pressure - ambient : 0.0;
+      const auto given = spec.state.pressure ? std::optional(Expression(*spec.state.pressure)) : std::nullopt;
+      b.varies = b.varies || (given && given->uses_time());
+      b.state = [=](const Vec3& x, double t) {
+        BoundaryState s;
+        s.pressure = static_cast<Real>((given ? (*given)(x.x(), x.y(), x.z(), t) : stagnation) / air.density);
+        return with_turbulence(s, formula.turbulence_at(x, t));
+      };
       if (!spec.patches.empty())
         throw InputError(fmt::format(
             "boundary.{}: patches of an incompressible flow need a face of type wall, velocity or jet",

@@ -45,17 +45,6 @@ void check_state(const std::string& key, const StateSpec& state, const Points& a
   check_formula(key + ".epsilon", state.epsilon, at, inside, found);
 }
 
-/// A whole face of a compressible flow has one turbulence: that it varies would be silently overlooked.
-void refuse_profile(const std::string& key, const StateSpec& state, Findings& found) {
-  const auto refuse = [&](const char* name, const std::optional<std::string>& text) {
-    if (text && !Expression(*text).is_constant())
-      found.error(key + "." + name, "the compressible solvers take one value for the whole face",
-                  "a number with its unit, or solver = \"incompressible\"", "k = \"0.1 m2/s2\"");
-  };
-  refuse("k", state.k);
-  refuse("epsilon", state.epsilon);
-}
-
 std::vector<double> thinned(const std::vector<double>& all, std::size_t most_looks) {
   const std::size_t step = (all.size() + most_looks - 1) / most_looks;
   std::vector<double> some;
@@ -78,13 +67,11 @@ void sense_turbulence(const Case& c, Findings& found) {
     Points at = cells;
     at[f / 2] = {f % 2 ? box->high[normal] : box->low[normal]};
     check_state(key, face.state, at, everywhere, found);
-    if (c.flow.solver != FlowSolver::incompressible) refuse_profile(key, face.state, found);
     for (std::size_t n = 0; n < face.patches.size(); ++n) {
       const PatchSpec& p = face.patches[n];
       const std::string patch_key = fmt::format("{}.patch.{}", key, n);
       check_state(
           patch_key, p.state, at, [&](const Vec3& x) { return (x - p.centre).norm() <= p.radius; }, found);
-      if (c.flow.solver != FlowSolver::incompressible) refuse_profile(patch_key, p.state, found);
     }
   }
   for (std::vector<double>& along : cells) along = thinned(along, looks_at_region);

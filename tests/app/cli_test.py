@@ -207,6 +207,17 @@ class CommandLine(unittest.TestCase):
         self.assertEqual(pathlib.Path("case.run/result.json").read_text(), before)
         self.assertEqual(ejecta("run", case, "--quiet", "--force").returncode, 0)
 
+    def test_a_case_that_cannot_start_neither_clears_a_run_nor_leaves_a_folder(self):
+        self.assertEqual(ejecta("run", self.case(), "--quiet").returncode, 0)
+        before = pathlib.Path("case.run/result.json").read_text()
+        # Overlaps are found where the bodies are put in their places.
+        wall = '[[wall]]\nname = "floor"\nmaterial = "stone"\n'
+        broken = self.case(BOUNCE + 'material = "stone"\n[[material]]\nname = "stone"\n' + wall)
+        self.assertEqual(ejecta("run", broken, "--quiet", "--force").returncode, 2)
+        self.assertEqual(pathlib.Path("case.run/result.json").read_text(), before)
+        self.assertEqual(ejecta("run", broken, "--quiet", "--out", "new.run").returncode, 2)
+        self.assertFalse(pathlib.Path("new.run").exists())
+
     def test_the_resolved_case_of_a_run_can_be_run_again(self):
         self.assertEqual(ejecta("run", self.case(), "--quiet").returncode, 0)
         self.assertEqual(ejecta("run", "case.run/case.toml", "--quiet", "--out", "again.run").returncode, 0)

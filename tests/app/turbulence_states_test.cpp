@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "app/flow_model.hpp"
 #include "app/incompressible_states.hpp"
 #include "case/load.hpp"
@@ -122,6 +124,25 @@ TEST(TurbulenceStates, LessThanNothingIsStillAir) {
   EXPECT_EQ(state.turbulence_at({0, 0, 0}, 0.0).k, 0.1);
   EXPECT_EQ(state.turbulence_at({0, 0, 0}, 0.1).k, air.k);
   EXPECT_EQ(state.turbulence_at({0, 0, 0}, 0.1).second, air.second);
+}
+
+TEST(TurbulenceStates, AnInletOfGasHasItsProfile) {
+  Channel flow(
+      channel("k = \"= 0.02 - 0.5 * z + t\"\nepsilon = \"0.3 m2/s3\"\n[fluid]\nviscosity = \"1e-5 Pa s\"",
+              "k-epsilon\"\nsolver = \"compressible-piso"));
+  const godunov::GasFormula inlet(flow.c, flow.c.boundary[0].state);
+  EXPECT_TRUE(inlet.uses_time());
+  EXPECT_NEAR(inlet.at({0, 0, 0.01}, 0.1).k, 0.115, 1e-12);
+  EXPECT_NEAR(inlet.at({0, 0, 1.0}, 0.0).k, 1e-4, 1e-12) << "less than nothing: still air";
+  flow.advance(5e-3);
+  const auto fields = flow.flow->fields();
+  const auto k =
+      std::find_if(fields.begin(), fields.end(), [](const output::CellField& f) { return f.name == "k"; });
+  ASSERT_NE(k, fields.end());
+  for (const int layer : {1, 4, 8}) {
+    const double z = 2e-3 * layer + 1e-3;
+    EXPECT_NEAR(k->component[0](0, 0, layer), 0.0245 - 0.5 * z, 1.5e-3) << z;
+  }
 }
 
 TEST(TurbulenceStates, AGasStartsFromItsProfile) {

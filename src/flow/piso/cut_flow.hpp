@@ -30,6 +30,8 @@ class CutFlow {
   /// Part of a cell's volume whose momentum it carries: 1 in plain fluid, 0 in solids.
   ConstFieldView carried() const { return carried_.view(); }
   Field& carried_field() { return carried_; }
+  /// To be called after the carried field has been filled from elsewhere.
+  void resume();
 
   /// Writes terms.out of cut cells, friction included, which is counted `weight` times (density, kg/m3) in
   /// cut.friction_impulse; of ghosts it says that nothing changes. Returns the momentum over density that the displaced
@@ -63,7 +65,7 @@ class CutFlow {
   const Grid& grid_;
   Real nu_;
   Field carried_;
-  std::vector<std::array<int, 3>> touched_;           // cells whose carried_ is not 1
+  std::vector<std::array<int, 3>> touched_;           // cells whose carried_ is not 1, rows in turn
   std::vector<std::array<Real, 3>> gradient_, kept_;  // of cut.cells
   std::vector<std::array<Real, 3>> values_;           // scratch of extend
   std::vector<Real> open_velocity_;                   // of cut.faces while they are closed
