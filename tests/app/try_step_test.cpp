@@ -63,6 +63,8 @@ void expect_same(Tank& a, Tank& b) {
   EXPECT_EQ(a.flow.momentum(), b.flow.momentum());
 }
 
+TEST(TryStep, AFlowAtRestHasNoDivergence) { EXPECT_EQ(Tank().flow.largest_divergence({}), 0.0); }
+
 TEST(TryStep, LeavesTheFlowAroundABodyAsItIs) {
   Tank tried, untried;
   for (int n = 0; n < 8; ++n) {
