@@ -7,6 +7,8 @@
 #include "app/air_limits.hpp"
 #include "app/jet_source.hpp"
 #include "case/extent.hpp"
+#include "case/load.hpp"
+#include "dem/course.hpp"
 #include "sorter/launch.hpp"
 
 namespace ejecta {
@@ -35,10 +37,14 @@ double leaves_box(const Case& c, const BodySpec& b, const Box& box) {
                                 : FlightState{b.position, b.velocity};
   const Vec3 half = half_extent(b);
   const double reach = b.shape == ShapeKind::sphere ? half.x() : half.norm();
+  const auto course = b.motion == Motion::prescribed ? make_course(b, folder_of(c)) : nullptr;
+  Vec3 driven = start.position + (course ? course->first_way() : Vec3(0, 0, 0));
   double last = 0.0;
   for (int n = 0; n <= samples; ++n) {
     const double t = c.run.end_time * n / samples;
-    const Vec3 x = start.position + t * start.velocity + 0.5 * t * t * c.environment.gravity;
+    const Vec3 x =
+        course ? driven : Vec3(start.position + t * start.velocity + 0.5 * t * t * c.environment.gravity);
+    if (course && t >= b.release_at) driven += course->way(t, c.run.end_time / samples);
     const bool inside =
         (x.array() + reach >= box.low.array()).all() && (x.array() - reach <= box.high.array()).all();
     if (inside) last = t;

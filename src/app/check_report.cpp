@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "app/body_checks.hpp"
+#include "app/flow_model.hpp"
 #include "app/forecast.hpp"
 #include "base/units.hpp"
 #include "case/extent.hpp"
@@ -61,19 +63,55 @@ std::string flow_part(const Case& c, double bandwidth) {
 }
 
 /// What a surface from a file touches as.
-std::string parts_words(const Case& c, const BodySpec& b) {
-  const Shape shape = make_shape(b, folder_of(c));
+std::string parts_words(const Shape& shape) {
   if (!shape.balls().empty()) return fmt::format(", as {} spheres", shape.balls().size());
   return fmt::format(", as {} convex parts, volume {:+.3f} %", shape.polytopes().size(),
                      100 * (shape.parts_volume() / shape.mass_properties().volume - 1));
 }
 
-std::string body_part(const Case& c, const BodySpec& b) {
-  std::string text = fmt::format("  body         \"{}\", {}, {}", b.name, word(b.shape), word(b.motion));
-  if (c.flow.solver != FlowSolver::none && smallest_feature(b) > 0.0)
-    text += fmt::format(": {:.1f} cells across its smallest feature ({})", cells_across(c, b),
-                        length_words(smallest_feature(b)));
-  if (!b.file.empty() || !b.files.empty()) text += parts_words(c, b);
+/// Edges of the box in body axes that just holds it, and its mass.
+std::string size_words(const Body& body) {
+  std::string text;
+  for (int d = 0; d < 3; ++d) {
+    const Vec3 along = Vec3::Unit(d);
+    const double size = along.dot(body.shape.support(along)) - along.dot(body.shape.support(-along));
+    text += fmt::format("{}{:.3g}", d == 0 ? "" : " x ", 1e3 * size);
+  }
+  return fmt::format("{} mm, {:.3g} g", text, 1e3 * body.mass);
+}
+
+/// Where a prescribed body goes, and how fast.
+std::string course_words(const Case& c, const Body& body) {
+  constexpr int looks = 2000;
+  const double dt = c.run.end_time / looks;
+  Vec3 at = body.position, low = at, high = at;
+  for (int n = 0; n < looks; ++n) {
+    if (n * dt < body.release_at) continue;
+    at += body.course->way(n * dt, dt);
+    low = low.cwiseMin(at);
+    high = high.cwiseMax(at);
+  }
+  std::string text = "\n               goes its way in";
+  for (int d = 0; d < 3; ++d) {
+    text += fmt::format("{} {} {:.4g}", d == 0 ? "" : ",", "xyz"[d], 1e3 * low[d]);
+    if (high[d] - low[d] > 1e-9) text += fmt::format(" to {:.4g}", 1e3 * high[d]);
+  }
+  const Course::Pace pace = body.course->pace(c.run.end_time);
+  text += fmt::format(" mm, up to {:.3g} m/s", pace.speed.norm());
+  if (pace.spin > 0.0) text += fmt::format(" and {:.3g} rad/s", pace.spin);
+  return text + fmt::format(", to ({:.4g}, {:.4g}, {:.4g}) mm", 1e3 * at.x(), 1e3 * at.y(), 1e3 * at.z());
+}
+
+std::string body_part(const Case& c, const BodySpec& b, const Materials& materials) {
+  const Body body = make_body(b, materials, folder_of(c));
+  std::string text = fmt::format("  body         \"{}\", {}, {}: {}", b.name, word(b.shape), word(b.motion),
+                                 size_words(body));
+  if (c.flow.solver != FlowSolver::none) {
+    const Vec3 at = b.on_belt ? place_of_interest(c, b) : body.position;
+    text += fmt::format(", {}", resolution_words(resolution_of(make_grid(c), body, at), body));
+  }
+  if (!b.file.empty() || !b.files.empty()) text += parts_words(body.shape);
+  if (body.course) text += course_words(c, body);
   return text + "\n";
 }
 
@@ -85,7 +123,8 @@ std::string check_report(const Case& c, const std::vector<Problem>& warnings, do
   if (c.flow.solver == FlowSolver::none)
     text += fmt::format("  flow         none, up to {}\n", format_quantity(c.run.end_time, Dimension::time));
   else text += flow_part(c, bandwidth);
-  for (const BodySpec& b : c.bodies) text += body_part(c, b);
+  const Materials materials(c);
+  for (const BodySpec& b : c.bodies) text += body_part(c, b, materials);
   const std::vector<std::string> assumed = assumptions(c);
   if (!assumed.empty()) text += "  assumptions in force:\n";
   for (const std::string& a : assumed) text += fmt::format("    {}\n", a);

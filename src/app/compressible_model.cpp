@@ -21,7 +21,7 @@ using namespace godunov;
 
 class CompressibleModel : public FlowModel {
  public:
-  CompressibleModel(const Case& c, const Grid& grid) : case_(c), grid_(grid) {
+  CompressibleModel(const Case& c, const Grid& grid) : case_(c), grid_(grid), formulas_(c, grid) {
     solver_ = solver_from_case(c, grid, inlets_);
     solver_->keep_ledger();
     if (!inlets_.empty()) drive_ = std::make_unique<JetDrive>(c);
@@ -33,20 +33,22 @@ class CompressibleModel : public FlowModel {
   }
 
   double stable_dt(double time) override {
+    set_boundaries(time);
     double dt = std::min(solver_->stable_dt(case_.run.courant), case_.run.time_step_max);
-    if (!jet_) return dt;
-    // A jet that starts must not outrun the step that lets it in, nor open and close unseen within one.
-    dt = std::min(dt, kStepOfPulse * case_.valve.duration);
-    const double h = width_inside(grid_, jet_->face());
-    return std::min(dt,
-                    std::max(0.5 * dt, case_.run.courant * h / std::max(jet_->fastest(time + dt), 1e-30)));
+    if (jet_) {
+      // A jet that starts must not outrun the step that lets it in, nor open and close unseen within one.
+      dt = std::min(dt, kStepOfPulse * case_.valve.duration);
+      const double h = width_inside(grid_, jet_->face());
+      dt =
+          std::min(dt, std::max(0.5 * dt, case_.run.courant * h / std::max(jet_->fastest(time + dt), 1e-30)));
+    }
+    return step_of_boundaries(time, dt);
   }
   double courant(double dt) const override { return dt / solver_->stable_dt(1.0); }
   void advance(double time, double dt, SolidMask& solids) override {
     const ScopedTimer timer(seconds_);
-    if (drive_) drive_->apply(time + 0.5 * dt, *solver_, inlets_);
-    if (jet_) let_in(time + 0.5 * dt);
-    solver_->advance(dt, solids);
+    move(time, dt, solids);
+    started_ = 1.0;
     fastest_ = std::max(fastest_, fastest());
     time_ = time + dt;
     ++calls_;
@@ -165,7 +167,8 @@ class CompressibleModel : public FlowModel {
                             l.momentum_of_solids.x(),
                             l.momentum_of_solids.y(),
                             l.momentum_of_solids.z(),
-                            l.work_of_solids};
+                            l.work_of_solids,
+                            started_};
     for (const double* v : solver_->state_numbers()) all.push_back(*v);
     return all;
   }
@@ -178,12 +181,63 @@ class CompressibleModel : public FlowModel {
     for (double* v : {&mass_at_start_, &energy_at_start_, &fastest_}) *v = in.number();
     l.momentum_of_solids = in.vec3();
     l.work_of_solids = in.number();
+    started_ = in.number();
     for (double* v : solver_->state_numbers()) *v = in.number();
     in.end();
-    if (jet_) let_in(time);
+    set_boundaries(time);
   }
 
  private:
+  void set_boundaries(double time) {
+    if (drive_) drive_->apply(time, *solver_, inlets_);
+    if (jet_) let_in(time);
+    if (formulas_.vary()) formulas_.apply(time, *solver_);
+  }
+  void move(double time, double dt, SolidMask& solids) {
+    set_boundaries(time + 0.5 * dt);
+    solver_->advance(dt, solids);
+  }
+
+  /// Gas at rest allows a long step, however hard boundaries or regions of another pressure are going to push
+  /// it. The first step, and one in which a boundary is switched, is tried and taken back, and halved while
+  /// it is outrun.
+  double step_of_boundaries(double time, double dt) {
+    const double courant = case_.run.courant;
+    double changed = started_ > 0.0 ? 0.0 : courant;
+    if (formulas_.vary()) {
+      dt = std::min(dt, kStepOfPulse * case_.run.end_time);  // what comes and goes must not be stepped over
+      for (int n = 0; n < 100 && formulas_.change(time, dt) > courant; ++n) dt *= 0.5;
+      changed = std::max(changed, formulas_.change(time, dt));
+    }
+    if (changed > 0.25 * courant)
+      for (int n = 0; n < 100 && !(try_step(time, dt) <= 1.25 * courant); ++n) dt *= 0.5;
+    return dt;
+  }
+  /// The Courant number that a step without bodies would reach. What is kept is all that a resume needs.
+  double try_step(double time, double dt) {
+    std::vector<Field> kept;
+    for (const Field* f : solver_->state()) kept.push_back(*f);
+    std::vector<double> numbers;
+    for (const double* v : solver_->state_numbers()) numbers.push_back(*v);
+    const BoundaryLedger ledger = solver_->ledger();
+    double reached = 1e30;
+    try {
+      SolidMask none;
+      move(time, dt, none);
+      set_boundaries(time + dt);
+      reached = dt / solver_->stable_dt(1.0);
+    } catch (const DivergedError&) {  // much too long
+    }
+    std::size_t n = 0;
+    for (Field* f : solver_->state()) *f = kept[n++];
+    n = 0;
+    for (double* v : solver_->state_numbers()) *v = numbers[n++];
+    solver_->ledger() = ledger;
+    set_boundaries(time);
+    solver_->stable_dt(case_.run.courant);  // which also says how a step is to be taken
+    return reached;
+  }
+
   /// What the jet brings to each cell of its face. The jet's velocity is that of air of the ambient density
   /// with the same momentum; here rho w^2 is kept, and the total temperature is that of the ambient, of which
   /// a jet some tens of orifices away consists (Crocco: it is even where the reservoir has it too): w^2 = M R
@@ -247,6 +301,7 @@ class CompressibleModel : public FlowModel {
 
   const Case& case_;
   const Grid& grid_;
+  FormulaFaces formulas_;
   std::vector<DrivenInlet> inlets_;
   std::unique_ptr<GasFlow> solver_;
   std::unique_ptr<JetDrive> drive_;
@@ -254,6 +309,7 @@ class CompressibleModel : public FlowModel {
   Vec3 momentum_at_start_{0, 0, 0};
   double mass_at_start_ = 0.0, energy_at_start_ = 0.0, seconds_ = 0.0, time_ = 0.0;
   double fastest_ = 0.0;  ///< m/s, anywhere at any time
+  double started_ = 0.0;  ///< 1 after the first step
   std::int64_t calls_ = 0;
 };
 

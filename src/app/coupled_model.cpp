@@ -6,6 +6,8 @@
 #include <cmath>
 
 #include "app/air_limits.hpp"
+#include "app/body_checks.hpp"
+#include "app/grid_walls.hpp"
 #include "app/jet_source.hpp"
 #include "base/error.hpp"
 #include "base/state_reader.hpp"
@@ -35,6 +37,8 @@ CoupledModel::CoupledModel(const Case& c)
       flow_(make_flow_model(case_, grid_)),
       particles_(make_particles(case_)) {
   air_ = flow_ != nullptr;
+  if (flow_)
+    for (const Wall& wall : grid_walls(case_, grid_, particles_)) particles_.add(wall);
   place_bodies();
   const std::size_t n = particles_.bodies().size();
   loads_.resize(n);
@@ -45,6 +49,8 @@ CoupledModel::CoupledModel(const Case& c)
   before_.resize(n);
   peak_speed_.assign(n, 0.0);
   if (flow_ && n > 0) coupling_.emplace(grid_, coupling_setup());
+  for (const Body& b : particles_.bodies())
+    paces_.push_back(b.course ? b.course->pace(case_.run.end_time) : Course::Pace{});
   if (const auto jet = flow_ ? make_jet_source(c) : nullptr) dead_from_ = jet->dead_from();
   check_bodies();
   build_step();
@@ -74,13 +80,16 @@ void CoupledModel::place_bodies() {
     std::vector<Vec3> path;
     const double reach = case_.splitter.enabled ? nozzle.x() + case_.splitter.distance + case_.splitter.length
                                                 : body.position.x();
-    const double flight = body.velocity.x() > 0.0 ? (reach - body.position.x()) / body.velocity.x() : 0.0;
+    const double flight =
+        body.velocity.x() > 0.0 && !body.course ? (reach - body.position.x()) / body.velocity.x() : 0.0;
     for (int p = 0; flight > 0.0 && p <= 60; ++p) {
       const double t = flight * p / 60.0;
       path.push_back(body.position + t * body.velocity + 0.5 * t * t * gravity);
     }
     undisturbed_.push_back(path);
   }
+  // What make_particles() could not look at: bodies from the belt, and the walls of the grid.
+  if (flow_ || case_.launch.enabled) particles_.require_apart();
   if (!case_.splitter.enabled || particles_.bodies().empty()) return;
   const double edge_x = nozzle.x() + case_.splitter.distance;
   double height;
@@ -103,23 +112,9 @@ void CoupledModel::place_bodies() {
 
 void CoupledModel::check_bodies() const {
   if (!flow_) return;
-  for (const Body& body : particles_.bodies()) {
-    const double size = 2.0 * body.shape.bounding_radius();
-    for (int d = 0; d < 3; ++d)
-      if (grid_.active(d) && size > grid_.axis(d).length())
-        throw InputError(
-            fmt::format("body \"{}\" ({:.3g} mm across) is larger than the box in {} ({:.3g} mm)", body.name,
-                        size * 1e3, "xyz"[d], grid_.axis(d).length() * 1e3));
-    double finest = 0.0;
-    for (int d = 0; d < 3; ++d)
-      if (grid_.active(d)) finest = std::max(finest, grid_.axis(d).smallest());
-    const double across = body.shape.smallest_feature() / finest;
-    if (across < 4.0)
-      throw InputError(
-          fmt::format("body \"{}\": {:.1f} cells across its smallest feature ({:.3g} mm) even where the grid "
-                      "is finest ({:.3g} mm); at least 4 are needed, 8 recommended",
-                      body.name, across, body.shape.smallest_feature() * 1e3, finest * 1e3));
-  }
+  std::vector<Problem> problems = ejecta::check_bodies(case_, grid_, particles_.bodies());
+  std::erase_if(problems, [](const Problem& p) { return p.severity != Severity::error; });
+  if (!problems.empty()) throw InputError(render(problems));
 }
 
 void CoupledModel::build_step() {
@@ -174,26 +169,41 @@ double CoupledModel::stable_dt(double time) const {
   if (case_.run.time_step) dt = *case_.run.time_step;
   if (flow_ && air_) {
     if (!case_.run.time_step) dt = std::min(dt, flow_->stable_dt(time));
-    if (coupling_ && !case_.run.time_step) {
-      // A body must not cross a cell in one step.
-      double rate = 0.0;
-      for (const Body& b : particles_.bodies())
-        for (int d = 0; d < 3; ++d) {
-          const double speed =
-              std::abs(b.velocity[d]) + b.angular_velocity.norm() * b.shape.bounding_radius();
-          if (grid_.active(d)) rate = std::max(rate, speed / grid_.axis(d).smallest());
-        }
-      if (rate > 0.0) dt = std::min(dt, 0.5 * case_.run.courant / rate);
-    }
+    if (coupling_ && !case_.run.time_step) dt = std::min(dt, step_of_bodies(time, dt));
   } else if (!case_.run.time_step) {
     dt = std::min(dt, kFlightStep);
   }
+  if (flow_ && air_ && !case_.run.time_step) dt = std::min(dt, step_of_courses());
   return dt;
+}
+
+/// A body must not cross half a cell in one step of at most dt, with the velocity it has, will have been
+/// given by then, or gains from gravity and the fluid.
+double CoupledModel::step_of_bodies(double time, double dt) const {
+  const double way = 0.5 * case_.run.courant;  // in cells
+  double rate = 0.0;                           // 1/s: rate dt + growth dt^2 = way
+  for (std::size_t n = 0; n < loads_.size(); ++n) {
+    const Body& b = particles_.bodies()[n];
+    const bool waits = time < std::max(b.release_at, b.enters_at.value_or(0.0));
+    const bool starts = waits && time + dt > std::max(b.release_at, b.enters_at.value_or(0.0));
+    const Vec3 velocity = starts ? case_.bodies[n].velocity : b.velocity;
+    const double spin = (starts ? case_.bodies[n].spin : b.angular_velocity).norm();
+    const bool falls = b.motion == Motion::free && (starts || !waits);
+    const Vec3 gain = falls ? Vec3(case_.environment.gravity + loads_[n].force / b.mass) : Vec3(0, 0, 0);
+    for (int d = 0; d < 3; ++d) {
+      if (!grid_.active(d)) continue;
+      const double h = grid_.axis(d).smallest();
+      const double r = (std::abs(velocity[d]) + spin * b.shape.bounding_radius()) / h;
+      rate = std::max(rate, 0.5 * (r + std::sqrt(r * r + 4.0 * way * std::abs(gain[d]) / h)));
+    }
+  }
+  return rate > 0.0 ? way / rate : dt;
 }
 
 void CoupledModel::advance(double time, double dt) {
   if (flow_ && air_) {
     courant_ = flow_->courant(dt);
+    if (!std::isfinite(courant_)) require_finite(time);
     max_courant_ = std::max(max_courant_, courant_);
   }
   for (Operator& op : step_) {
@@ -212,6 +222,22 @@ void CoupledModel::watch_air(double time) {
     if (time > dead_from_ && energy < kDeadAir * peak_energy_) air_ = false;
   }
   if (time > dead_from_ && !coupling_->any_inside(particles_.bodies())) air_ = false;
+}
+
+/// What is prescribed may be at rest now and fast within the step: its highest speed in the whole run must
+/// not take it over half a cell, and of a swing there are at least 40 steps.
+double CoupledModel::step_of_courses() const {
+  constexpr double change_in_step = 0.1;  // of the highest velocity
+  double rate = 0.0;
+  for (std::size_t n = 0; n < paces_.size(); ++n) {
+    const double around = paces_[n].spin * particles_.bodies()[n].shape.bounding_radius();
+    for (int d = 0; d < 3; ++d)
+      if (grid_.active(d))
+        rate = std::max(rate,
+                        (paces_[n].speed[d] + around) / grid_.axis(d).smallest() / (0.5 * case_.run.courant));
+    rate = std::max(rate, paces_[n].change / change_in_step);
+  }
+  return rate > 0.0 ? 1.0 / rate : 1e300;
 }
 
 bool CoupledModel::finished() const {

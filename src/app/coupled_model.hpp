@@ -68,6 +68,8 @@ class CoupledModel {
   void check_bodies() const;
   void build_step();
   void watch_air(double time);
+  double step_of_courses() const;
+  double step_of_bodies(double time, double dt) const;
 
   const Case case_;  // copies of bodies written out
   Grid grid_;
@@ -80,6 +82,7 @@ class CoupledModel {
   std::vector<Load> loads_;
   std::vector<Vec3> impulse_, start_velocity_, before_, force_sum_, friction_sum_, torque_sum_;
   std::vector<std::vector<Vec3>> undisturbed_;
+  std::vector<Course::Pace> paces_;  // of prescribed bodies, over the whole run
   std::vector<double> peak_speed_;
   double averaged_ = 0.0, max_courant_ = 0.0, courant_ = 0.0, peak_energy_ = 0.0;
   std::int64_t flow_steps_ = 0;

@@ -9,7 +9,9 @@
 #include "app/jet_source.hpp"
 #include "base/parallel.hpp"
 #include "case/expression.hpp"
+#include "case/load.hpp"
 #include "case/schema.hpp"
+#include "dem/course.hpp"
 #include "flow/gas.hpp"
 #include "grid/grid.hpp"
 
@@ -89,7 +91,10 @@ double fastest_speed(const Case& c, const Grid& grid) {
         fastest,
         fastest_state(c, region.state, region.box ? 0.5 * ((*region.box)[0] + (*region.box)[1]) : centre));
   if (c.initial.empty()) fastest = std::max(fastest, fastest_state(c, StateSpec{}, centre));
-  for (const BodySpec& b : c.bodies) fastest = std::max(fastest, b.velocity.norm());
+  for (const BodySpec& b : c.bodies)
+    fastest = std::max(fastest, b.motion == Motion::prescribed
+                                    ? make_course(b, folder_of(c))->pace(c.run.end_time).speed.norm()
+                                    : b.velocity.norm());
   return fastest;
 }
 

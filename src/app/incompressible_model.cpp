@@ -2,15 +2,19 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "app/air_limits.hpp"
+#include "app/boundary_change.hpp"
 #include "app/grid_sampler.hpp"
 #include "app/incompressible_states.hpp"
 #include "app/round_jet.hpp"
 #include "base/error.hpp"
 #include "base/state_reader.hpp"
 #include "case/expression.hpp"
+#include "case/initial.hpp"
 #include "flow/piso/incompressible.hpp"
 
 namespace ejecta {
@@ -34,31 +38,25 @@ class IncompressibleModel : public FlowModel {
                          const Vec3& x, double t) {
         return Vec3(f[0](x.x(), x.y(), x.z(), t), f[1](x.x(), x.y(), x.z(), t), f[2](x.x(), x.y(), x.z(), t));
       };
-    std::array<Boundary, 6> faces;
     for (int f = 0; f < 6; ++f)
-      faces[static_cast<std::size_t>(f)] = make_boundary(c, grid, still_, jet_.get(), f);
-    flow_ = std::make_unique<Incompressible>(grid, faces, setup);
+      faces_[static_cast<std::size_t>(f)] = make_boundary(c, grid, still_, jet_.get(), f);
+    flow_ = std::make_unique<Incompressible>(grid, faces_, setup);
+    if (jet_) faces_[static_cast<std::size_t>(jet_->face())].varies = false;  // has a limit of its own
     initialise();
   }
 
   double stable_dt(double time) override {
-    double dt = std::min(flow_->stable_dt(case_.run.courant), case_.run.time_step_max);
-    if (!jet_) return dt;
-    dt = std::min(dt, kStepOfPulse * case_.valve.duration);
-    // A jet that starts must not outrun the step that lets it in.
-    const double h = width_inside(grid_, jet_->face());
-    for (int n = 0; n < 60; ++n) {
-      const double limit = case_.run.courant * h / std::max(jet_->fastest(time + dt), 1e-30);
-      if (limit >= dt) break;
-      dt = std::max(limit, 0.5 * dt);
-    }
-    return dt;
+    double dt = step_of_flow(time);
+    if (!std::isfinite(dt)) report_divergence(time);
+    return step_of_boundaries(time, step_of_jet(time, std::min(dt, case_.run.time_step_max)));
   }
   double courant(double dt) const override { return flow_->courant(dt); }
   void advance(double time, double dt, SolidMask& solids) override {
     flow_->advance(time, dt, solids);
     cut_ = &solids.cut;
     last_time_ = time + dt;
+    last_dt_ = dt;
+    resumed_step_ = 0.0;
   }
   double density() const override { return still_.density; }
   std::array<ConstFieldView, 3> velocity() const override { return flow_->velocity(); }
@@ -118,8 +116,7 @@ class IncompressibleModel : public FlowModel {
     ledger["impulse_on_solids_N_s"] = {l.impulse_on_solids.x(), l.impulse_on_solids.y(),
                                        l.impulse_on_solids.z()};
     ledger["momentum_of_displaced_fluid_N_s"] = {l.displaced.x(), l.displaced.y(), l.displaced.z()};
-    const CutCells none;
-    ledger["largest_divergence"] = flow_->largest_divergence(cut_ ? *cut_ : none);
+    ledger["largest_divergence"] = divergence();
     if (jet_ && grid_.axisymmetric()) {
       const double d = case_.valve.orifice_diameter, z0 = case_.jet.nozzle.z();
       const double exit = jet_->fastest(last_time_);
@@ -155,9 +152,13 @@ class IncompressibleModel : public FlowModel {
   std::vector<double> state_numbers() const override {
     const FlowLedger& l = flow_->ledger();
     std::vector<double> n;
-    for (const Vec3& v : {l.momentum_through_boundaries, l.impulse_on_solids, l.displaced, momentum_at_start_})
+    for (const Vec3& v :
+         {l.momentum_through_boundaries, l.impulse_on_solids, l.displaced, momentum_at_start_})
       n.insert(n.end(), {v.x(), v.y(), v.z()});
     n.insert(n.end(), {l.mass_through_boundaries, l.mass_in});
+    // The velocity before the last step is not stored, only what it says of the next one.
+    const double next = last_dt_ > 0.0 ? flow_->stable_dt(case_.run.courant, last_dt_) : resumed_step_;
+    n.insert(n.end(), {next, divergence()});
     return n;
   }
   void restore_numbers(std::span<const double> n, double time) override {
@@ -165,42 +166,94 @@ class IncompressibleModel : public FlowModel {
     StateReader in(n, "ledger of the air");
     for (Vec3* v : {&l.momentum_through_boundaries, &l.impulse_on_solids, &l.displaced, &momentum_at_start_})
       *v = in.vec3();
-    for (double* v : {&l.mass_through_boundaries, &l.mass_in}) *v = in.number();
+    for (double* v : {&l.mass_through_boundaries, &l.mass_in, &resumed_step_, &resumed_divergence_})
+      *v = in.number();
     in.end();
     flow_->resume(time);
   }
 
  private:
+  /// Of the last step: the cut cells to which it belongs are not in a checkpoint.
+  double divergence() const { return cut_ ? flow_->largest_divergence(*cut_) : resumed_divergence_; }
+  /// What the flow itself allows.
+  double step_of_flow(double time) {
+    const double courant = case_.run.courant;
+    if (last_dt_ > 0.0) return flow_->stable_dt(courant, last_dt_);
+    if (resumed_step_ == 0.0)
+      return flow_->first_step(time, courant, step_of_jet(time, case_.run.time_step_max));
+    flow_->stable_dt(courant);  // sets what advance() needs
+    return resumed_step_;
+  }
+  /// A jet that starts must not outrun the step that lets it in.
+  double step_of_jet(double time, double dt) const {
+    if (!jet_) return dt;
+    dt = std::min(dt, kStepOfPulse * case_.valve.duration);
+    const double h = width_inside(grid_, jet_->face());
+    for (int n = 0; n < 60; ++n) {
+      const double limit = case_.run.courant * h / std::max(jet_->fastest(time + dt), 1e-30);
+      if (limit >= dt) break;
+      dt = std::max(limit, 0.5 * dt);
+    }
+    return dt;
+  }
+  /// Nor must a boundary that is switched on; where it is, what the flow behind it does is tried as well.
+  double step_of_boundaries(double time, double dt) {
+    if (std::none_of(faces_.begin(), faces_.end(), [](const Boundary& b) { return b.varies; })) return dt;
+    const double courant = case_.run.courant;
+    dt = std::min(dt, kStepOfPulse * case_.run.end_time);  // what comes and goes must not be stepped over
+    BoundaryChange change = boundary_change(grid_, faces_, time, dt);
+    for (int n = 0; n < 100 && change.reached > courant; ++n) {
+      dt *= 0.5;
+      change = boundary_change(grid_, faces_, time, dt);
+    }
+    if (change.changed > 0.25 * courant)
+      for (int n = 0; n < 100 && !(flow_->try_step(time, dt) <= 1.5 * courant); ++n) dt *= 0.5;
+    return dt;
+  }
+  [[noreturn]] void report_divergence(double time) const {
+    Vec3 x{0, 0, 0};
+    std::string where;
+    if (!flow_->finite(&x))
+      where = fmt::format(" near x, y, z = {:.4g}, {:.4g}, {:.4g} mm", x.x() * 1e3, x.y() * 1e3, x.z() * 1e3);
+    throw DivergedError(fmt::format(
+        "the flow diverged at t = {:.6g} s{}: a velocity or an eddy viscosity is no number; try a "
+        "smaller run.courant, a smoother grid there, or a longer valve.rise_time",
+        time, where));
+  }
+
+  /// What the regions that hold a cell say together.
+  struct Start {
+    StateFormula formula;
+    Expression pressure;
+  };
   void initialise() {
-    std::vector<std::pair<const InitialSpec*, StateFormula>> regions;
-    for (const InitialSpec& i : case_.initial) regions.emplace_back(&i, StateFormula(i.state, still_));
-    const auto inside = [](const InitialSpec& i, const Vec3& x) {
-      return !i.box || ((x - (*i.box)[0]).minCoeff() >= 0.0 && ((*i.box)[1] - x).minCoeff() >= 0.0);
+    std::map<std::vector<int>, Start> starts;
+    const auto start_at = [&](const Vec3& x) -> const Start& {
+      const std::vector<int> regions = regions_at(case_, x);
+      const auto known = starts.find(regions);
+      if (known != starts.end()) return known->second;
+      const StateSpec spec = merged(case_, regions);
+      return starts
+          .emplace(regions, Start{StateFormula(spec, still_),
+                                  spec.pressure ? Expression(*spec.pressure) : Expression()})
+          .first->second;
     };
     if (TwoEquation* t = flow_->turbulence()) {
       t->initialise(still_.k, still_.second);
-      for (const auto& [spec, formula] : regions)
-        for (int k = 0; k < grid_.nz(); ++k)
-          for (int j = 0; j < grid_.ny(); ++j)
-            for (int i = 0; i < grid_.nx(); ++i)
-              if (inside(*spec, grid_.centre(i, j, k))) t->set_at(i, j, k, formula.k, formula.second);
+      for (int k = 0; k < grid_.nz(); ++k)
+        for (int j = 0; j < grid_.ny(); ++j)
+          for (int i = 0; i < grid_.nx(); ++i) {
+            const Vec3 x = grid_.centre(i, j, k);
+            const StateFormula::Turbulence at = start_at(x).formula.turbulence_at(x, 0.0);
+            t->set_at(i, j, k, at.k, at.second);
+          }
     }
-    const auto velocity = [&](const Vec3& x) {
-      Vec3 v{0, 0, 0};
-      for (const auto& [spec, formula] : regions)
-        if (formula.has_velocity && inside(*spec, x)) v = formula.at(x, 0.0);
-      return v;
-    };
-    std::vector<std::pair<const InitialSpec*, Expression>> pressures;
-    for (const InitialSpec& i : case_.initial)
-      if (i.state.pressure) pressures.emplace_back(&i, Expression(*i.state.pressure));
+    const auto velocity = [&](const Vec3& x) { return start_at(x).formula.at(x, 0.0); };
     const auto pressure = [&](const Vec3& x) {
-      double p = 0.0;
-      for (const auto& [spec, formula] : pressures)
-        if (inside(*spec, x)) p = formula(x.x(), x.y(), x.z(), 0.0) / still_.density;
-      return p;
+      return start_at(x).pressure(x.x(), x.y(), x.z(), 0.0) / still_.density;
     };
     flow_->initialise(velocity, pressure, 0.0);
+    resumed_divergence_ = flow_->largest_divergence({});
     momentum_at_start_ = flow_->momentum();
   }
 
@@ -208,10 +261,13 @@ class IncompressibleModel : public FlowModel {
   const Grid& grid_;
   StillAir still_;
   std::unique_ptr<JetInlet> jet_;
+  std::array<Boundary, 6> faces_;
   std::unique_ptr<Incompressible> flow_;
   Vec3 momentum_at_start_{0, 0, 0};
-  double last_time_ = 0;
-  const CutCells* cut_ = nullptr;  // of the last step
+  double last_time_ = 0, last_dt_ = 0;  ///< s, of the last step of this process
+  double resumed_step_ = 0;             ///< s, what the flow allowed when the checkpoint was written
+  double resumed_divergence_ = 0;       ///< what it was then
+  const CutCells* cut_ = nullptr;       // of the last step
 };
 
 }  // namespace

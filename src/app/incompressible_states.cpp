@@ -33,25 +33,41 @@ StillAir::StillAir(const Case& c)
       k(1e-4),
       second(omega ? k / nu : 0.09 * k * k / nu) {}
 
-StateFormula::StateFormula(const StateSpec& s, const StillAir& air) {
+StateFormula::StateFormula(const StateSpec& s, const StillAir& air) : still_(air) {
   if (s.velocity)
     for (std::size_t d = 0; d < 3; ++d) {
       velocity[d] = Expression((*s.velocity)[d]);
       varies = varies || velocity[d].uses_time();
     }
   has_velocity = s.velocity.has_value();
-  k = s.k.value_or(air.k);
-  second = air.second;
-  if (s.epsilon) second = air.omega ? *s.epsilon / (0.09 * k) : *s.epsilon;
+  if (s.k) k_ = Expression(*s.k);
+  if (s.epsilon) epsilon_ = Expression(*s.epsilon);
+  varies = varies || (k_ && k_->uses_time()) || (epsilon_ && epsilon_->uses_time());
+}
+
+StateFormula::Turbulence StateFormula::turbulence_at(const Vec3& x, double t) const {
+  Turbulence s{still_.k, still_.second};
+  // A constant keeps its meaning: k = 0 lets the turbulence inside through.
+  const auto value = [&](const Expression& f, double still) {
+    const double v = f(x.x(), x.y(), x.z(), t);
+    return f.is_constant() || v > 0.0 ? v : still;
+  };
+  if (k_) s.k = value(*k_, still_.k);
+  if (epsilon_) {
+    const double epsilon = value(*epsilon_, 0.09 * still_.k * still_.k / still_.nu);
+    s.second = still_.omega ? epsilon / (0.09 * s.k) : epsilon;
+  }
+  return s;
 }
 
 Boundary make_boundary(const Case& c, const Grid& grid, const StillAir& air, const JetInlet* jet, int face) {
   const BoundarySpec& spec = c.boundary[static_cast<std::size_t>(face)];
   const StateFormula formula(spec.state, air);
   Boundary b;
-  const auto constant_turbulence = [](BoundaryState s, double k, double second) {
-    s.k = static_cast<Real>(k);
-    s.second = static_cast<Real>(second);
+  b.varies = formula.varies;
+  const auto with_turbulence = [](BoundaryState s, const StateFormula::Turbulence& turbulence) {
+    s.k = static_cast<Real>(turbulence.k);
+    s.second = static_cast<Real>(turbulence.second);
     return s;
   };
   const bool axis = grid.axisymmetric() && face == 0 && grid.lower().x() == 0.0;
@@ -70,10 +86,15 @@ Boundary make_boundary(const Case& c, const Grid& grid, const StillAir& air, con
       b.kind = BoundaryKind::open;
       b.total_pressure = spec.type == BoundaryType::total_pressure;
       const double ambient = c.environment.pressure;
-      if (b.total_pressure && spec.total_pressure > 0.0)
-        b.pressure = (spec.total_pressure - ambient) / air.density;
-      if (spec.state.pressure) b.pressure = Expression(*spec.state.pressure)(0, 0, 0, 0) / air.density;
-      b.state = [=](const Vec3&, double) { return constant_turbulence({}, formula.k, formula.second); };
+      const double stagnation =
+          b.total_pressure && spec.total_pressure > 0.0 ? spec.total_pressure - ambient : 0.0;
+      const auto given = spec.state.pressure ? std::optional(Expression(*spec.state.pressure)) : std::nullopt;
+      b.varies = b.varies || (given && given->uses_time());
+      b.state = [=](const Vec3& x, double t) {
+        BoundaryState s;
+        s.pressure = static_cast<Real>((given ? (*given)(x.x(), x.y(), x.z(), t) : stagnation) / air.density);
+        return with_turbulence(s, formula.turbulence_at(x, t));
+      };
       if (!spec.patches.empty())
         throw InputError(fmt::format(
             "boundary.{}: patches of an incompressible flow need a face of type wall, velocity or jet",
@@ -89,7 +110,6 @@ Boundary make_boundary(const Case& c, const Grid& grid, const StillAir& air, con
       b.kind = BoundaryKind::inflow;
       break;
   }
-  b.varies = formula.varies;
   struct Piece {
     Vec3 centre;
     double radius;
@@ -113,7 +133,7 @@ Boundary make_boundary(const Case& c, const Grid& grid, const StillAir& air, con
     if (blown) return jet_state(grid, air, *jet, x, t);
     const Vec3 v = f->at(x, t);
     for (int d = 0; d < 3; ++d) s.velocity[static_cast<std::size_t>(d)] = static_cast<Real>(v[d]);
-    return constant_turbulence(s, f->k, f->second);
+    return with_turbulence(s, f->turbulence_at(x, t));
   };
   return b;
 }

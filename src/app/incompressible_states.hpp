@@ -1,5 +1,6 @@
 #pragma once
 #include <array>
+#include <optional>
 
 #include "app/jet_inlet.hpp"
 #include "case/case.hpp"
@@ -23,13 +24,21 @@ struct StillAir {
 struct StateFormula {
   std::array<Expression, 3> velocity;
   bool has_velocity = false, varies = false;
-  double k = 0, second = 0;
 
   StateFormula(const StateSpec& s, const StillAir& air);
   Vec3 at(const Vec3& x, double t) const {
     return {velocity[0](x.x(), x.y(), x.z(), t), velocity[1](x.x(), x.y(), x.z(), t),
             velocity[2](x.x(), x.y(), x.z(), t)};
   }
+  struct Turbulence {
+    double k, second;  ///< see StillAir
+  };
+  /// What a formula makes less than nothing, or no number of, counts as still air.
+  Turbulence turbulence_at(const Vec3& x, double t) const;
+
+ private:
+  StillAir still_;
+  std::optional<Expression> k_, epsilon_;  ///< of still air where the case gives none
 };
 
 /// What a face of the box does. Keeps references to the case, the grid and the jet (null: none enters).

@@ -17,11 +17,16 @@ namespace {
 class CompressibleAir : public JetAir {
  public:
   CompressibleAir(const Case& c, const Grid& grid)
-      : case_(c), grid_(grid), drive_(c), solver_(godunov::solver_from_case(c, grid, inlets_)) {}
+      : case_(c),
+        grid_(grid),
+        drive_(c),
+        formulas_(c, grid),
+        solver_(godunov::solver_from_case(c, grid, inlets_)) {}
 
   double stable_dt(double) override { return solver_->stable_dt(case_.run.courant); }
   void advance(double time, double dt) override {
     drive_.apply(time + 0.5 * dt, *solver_, inlets_);
+    if (formulas_.vary()) formulas_.apply(time + 0.5 * dt, *solver_);
     solver_->advance(dt);
   }
   JetPoint at(const Vec3& position) const override {
@@ -48,6 +53,7 @@ class CompressibleAir : public JetAir {
   const Case& case_;
   const Grid& grid_;
   JetDrive drive_;
+  godunov::FormulaFaces formulas_;
   std::vector<godunov::DrivenInlet> inlets_;
   std::unique_ptr<godunov::GasFlow> solver_;
 };

@@ -63,6 +63,7 @@ std::vector<MeasuredCurve> read_measurements(const Case& c) {
 
 JetRun::JetRun(const Case& c, double kept_at, const RunOptions& options)
     : jet_(c),
+      measured_(read_measurements(c)),
       directory_(output::RunDirectory::create(options.out.empty() ? output::RunDirectory::default_path(c.path)
                                                                   : std::filesystem::path(options.out),
                                               options.force)),
@@ -74,7 +75,6 @@ JetRun::JetRun(const Case& c, double kept_at, const RunOptions& options)
       orifice_(directory_, lines_),
       momentum_(jet_),
       profile_(jet_, kept_at),
-      measured_(read_measurements(c)),
       progress_(std::cerr, output::progress_options_of_terminal(options.quiet ? output::Verbosity::quiet
                                                                               : output::Verbosity::normal)),
       quiet_(options.quiet),

@@ -35,14 +35,14 @@ class JetRun {
   output::ProgressState state(double dt) const;
 
   JetModel jet_;
-  output::RunDirectory directory_;
+  std::vector<MeasuredCurve> measured_;  ///< as the case lists them
+  output::RunDirectory directory_;       ///< made last of what can fail: it clears a finished run
   output::Provenance provenance_;
   std::vector<std::string> lines_;
   OrificeRecord orifice_;
   MomentumRecord momentum_;
   ProfileRecorder profile_;
   std::vector<JetProbe> probes_;
-  std::vector<MeasuredCurve> measured_;  ///< as the case lists them
   output::Progress progress_;
   bool quiet_;
   double interval_, next_history_ = 0.0, shown_at_ = 0.0, unseen_ = 0.0, wall_ = 0.0;

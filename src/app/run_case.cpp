@@ -37,11 +37,10 @@ class Run {
   Run(const Case& c, const RunOptions& options)
       : case_(c),
         options_(options),
-        path_(options.out.empty() ? output::RunDirectory::default_path(c.path)
-                                  : std::filesystem::path(options.out)),
+        path_(path_of(c, options)),
+        model_(c),
         directory_(options.resume ? output::RunDirectory::open(path_)
                                   : output::RunDirectory::create(path_, options.force)),
-        model_(c),
         store_(directory_.checkpoints()),
         progress_(std::cerr, progress_options()) {
     provenance_ = {.command = "ejecta run " + c.path,
@@ -108,6 +107,14 @@ class Run {
   }
 
  private:
+  /// Refuses at once a place where the run could not be kept: its model may take minutes to build.
+  static std::filesystem::path path_of(const Case& c, const RunOptions& options) {
+    const auto path =
+        options.out.empty() ? output::RunDirectory::default_path(c.path) : std::filesystem::path(options.out);
+    if (options.resume) output::RunDirectory::open(path);
+    else output::RunDirectory::require_creatable(path, options.force);
+    return path;
+  }
   output::ProgressOptions progress_options() const {
     auto p = output::progress_options_of_terminal(options_.quiet     ? output::Verbosity::quiet
                                                   : options_.verbose ? output::Verbosity::verbose
@@ -228,8 +235,8 @@ class Run {
   const Case& case_;
   RunOptions options_;
   std::filesystem::path path_;
+  CoupledModel model_;  // before the directory: a case that cannot start must not have cleared a finished run
   output::RunDirectory directory_;
-  CoupledModel model_;
   output::CheckpointStore store_;
   output::Progress progress_;
   output::Provenance provenance_;

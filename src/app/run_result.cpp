@@ -52,10 +52,14 @@ Json body_json(const CoupledModel& m, std::size_t b) {
                             : body.shape.projected_area(body.orientation.conjugate() * direction);
     const double q = 0.5 * m.flow()->density() * c.stream.velocity.squaredNorm() * area;
     const Vec3 force = m.mean_force(b);
-    j["drag_coefficient"] = force.dot(direction) / q;
-    j["lift_over_drag"] = (force - force.dot(direction) * direction).norm() / std::abs(force.dot(direction));
-    j["torque_over_drag_length"] =
-        m.mean_torque(b).norm() / (std::abs(force.dot(direction)) * 2.0 * body.shape.bounding_radius());
+    const double drag = force.dot(direction);
+    j["drag_coefficient"] = drag / q;
+    // Against a drag of nothing there is no ratio; the file then has no such number.
+    if (drag != 0.0) {
+      j["lift_over_drag"] = (force - drag * direction).norm() / std::abs(drag);
+      j["torque_over_drag_length"] =
+          m.mean_torque(b).norm() / (std::abs(drag) * 2.0 * body.shape.bounding_radius());
+    }
   }
   if (m.splitter()) {
     if (const auto& v = m.splitter()->verdict(b)) {

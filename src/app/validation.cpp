@@ -6,6 +6,7 @@
 #include <cmath>
 #include <fstream>
 
+#include "app/body_checks.hpp"
 #include "app/exit_code.hpp"
 #include "base/error.hpp"
 #include "base/text.hpp"
@@ -131,7 +132,7 @@ void record(const std::filesystem::path& run_directory, const std::vector<Compar
 }
 
 void run_and_compare(const std::string& path, const RunOptions& options, const Runner& run, Validation& v) {
-  const Case c = load_case(path);
+  const Case c = load_checked(path);
   if (c.expects.empty()) throw InputError(fmt::format("{}: no [[expect]], nothing to compare with", path));
   const bool series = !c.convergence.factors.empty();
   const std::vector<double> factors = series ? c.convergence.factors : std::vector<double>{1.0};

@@ -96,8 +96,8 @@ struct StateSpec {
   std::optional<std::string> pressure;                 ///< Pa: gauge for incompressible, absolute otherwise
   std::optional<std::string> density;                  ///< kg/m3, compressible
   std::optional<std::string> temperature;              ///< K, compressible
-  std::optional<double> k;                             ///< m2/s2
-  std::optional<double> epsilon;                       ///< m2/s3
+  std::optional<std::string> k;                        ///< m2/s2
+  std::optional<std::string> epsilon;                  ///< m2/s3
 };
 
 /// [[boundary.z_min.patch]]: a disc on that face with a type of its own
@@ -208,8 +208,11 @@ struct BodySpec {
   std::optional<double> mass;     ///< kg, overrides
   Motion motion = Motion::free;
   Vec3 position{0, 0, 0};  ///< m, of the centre of mass at release
-  Vec3 velocity{0, 0, 0};  ///< m/s
-  Vec3 spin{0, 0, 0};      ///< rad/s, world axes
+  Vec3 velocity{0, 0, 0};  ///< m/s; of a formula its value at t = 0
+  Vec3 spin{0, 0, 0};      ///< rad/s, world axes; likewise
+  /// Formulas in t of a prescribed body, where its velocity or spin is no constant
+  std::optional<std::array<std::string, 3>> velocity_formula, spin_formula;
+  std::string path;  ///< prescribed: CSV file of its way, added to position and rotation_angle
   Vec3 rotation_axis{0, 0, 1};
   double rotation_angle = 0.0;  ///< rad
   double release_at = 0.0;      ///< s, body rests as placed until then

@@ -20,6 +20,7 @@ class Expression {
 
   bool is_constant() const { return !uses_space_ && !uses_time_; }
   bool uses_time() const { return uses_time_; }
+  bool uses_space() const { return uses_space_; }
 
  private:
   friend class ExpressionCompiler;

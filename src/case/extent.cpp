@@ -29,6 +29,20 @@ void refine(GridSpec& grid, double factor) {
       if (axis.cells.size() > 1 || n > 1) n = std::max(1, static_cast<int>(std::lround(n * factor)));
 }
 
+std::vector<double> cell_centres(const AxisSpec& axis) {
+  std::vector<double> centres;
+  for (std::size_t b = 0; b < axis.cells.size(); ++b) {
+    double low = axis.points[b];
+    for (int i = 0; i < axis.cells[b]; ++i) {
+      const double width = cell_width(axis.points[b + 1] - axis.points[b], axis.cells[b],
+                                      axis.grading.empty() ? 1.0 : axis.grading[b], i);
+      centres.push_back(low + 0.5 * width);
+      low += width;
+    }
+  }
+  return centres;
+}
+
 double widest_cell(const AxisSpec& axis, double from, double to) {
   from = std::clamp(from, axis.points.front(), axis.points.back());
   to = std::clamp(to, axis.points.front(), axis.points.back());
@@ -95,36 +109,9 @@ Vec3 half_extent(const BodySpec& b) {
   return Vec3::Zero();
 }
 
-double smallest_feature(const BodySpec& b) {
-  switch (b.shape) {
-    case ShapeKind::cluster:
-      return b.sphere_diameter;
-    case ShapeKind::multisphere: {
-      double smallest = b.spheres.empty() ? 0.0 : 2.0 * b.spheres.front()[3];
-      for (const auto& s : b.spheres) smallest = std::min(smallest, 2.0 * s[3]);
-      return smallest;
-    }
-    default:
-      return 2.0 * half_extent(b).minCoeff();
-  }
-}
-
 Vec3 place_of_interest(const Case& c, const BodySpec& b) {
   if (!b.on_belt) return b.position;
   return c.jet.nozzle + Vec3(0.0, c.launch.offset_across, c.launch.stand_off);
-}
-
-double cells_across(const Case& c, const BodySpec& b) {
-  const Vec3 at = place_of_interest(c, b), half = half_extent(b);
-  const double reach = half.maxCoeff();
-  double widest = 0.0;
-  for (std::size_t a = 0; a < 3; ++a) {
-    const AxisSpec& axis = c.grid.axis[a];
-    if (axis.cells.size() == 1 && axis.cells[0] == 1) continue;
-    const double x = at[static_cast<int>(a)];
-    widest = std::max(widest, widest_cell(axis, x - reach, x + reach));
-  }
-  return widest > 0.0 ? smallest_feature(b) / widest : 1e300;
 }
 
 }  // namespace ejecta

@@ -1,6 +1,7 @@
 #pragma once
 #include <array>
 #include <optional>
+#include <vector>
 
 #include "base/vec.hpp"
 #include "case/case.hpp"
@@ -22,6 +23,8 @@ std::optional<Box> grid_box(const Case&);
 double cell_width(double length, int cells, double grading, int index);
 /// Cells of each block times `factor`, at least one; directions of a single cell stay as they are.
 void refine(GridSpec&, double factor);
+/// Middles of the cells of an axis, ascending, m.
+std::vector<double> cell_centres(const AxisSpec& axis);
 /// Largest width of the cells of an axis that touch [from, to], or the nearest cell's; m.
 double widest_cell(const AxisSpec& axis, double from, double to);
 
@@ -33,11 +36,7 @@ double jet_height(const Case&);
 
 /// Half edge lengths of the box around a body in its own axes, m; zero for a mesh, which only the file knows.
 Vec3 half_extent(const BodySpec&);
-/// What a grid must resolve: smallest sphere or edge, m; zero when unknown.
-double smallest_feature(const BodySpec&);
 /// Where the body is when it matters: at the start, or on the jet's axis if it comes from the belt, m.
 Vec3 place_of_interest(const Case&, const BodySpec&);
-/// Fewest cells across the smallest feature of a body, over the axes that have more than one cell.
-double cells_across(const Case&, const BodySpec&);
 
 }  // namespace ejecta

@@ -51,6 +51,7 @@ struct TypeOf {
   }
   Json operator()(const Formula&) const { return formula(); }
   Json operator()(const Formulas&) const { return list_of(formula(), 3); }
+  Json operator()(const VectorOrFormulas&) const { return list_of(formula(), 3); }
   Json operator()(const Choice& c) const {
     Json names = Json::array();
     for (const Word& w : *c.words) names.push_back(w.name);

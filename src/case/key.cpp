@@ -73,6 +73,9 @@ struct ValueText {
     return bracketed(f.text ? *f.text : **f.optional,
                      [&](const std::string& s) { return formula_text(s, d); });
   }
+  std::string operator()(const VectorOrFormulas& v) const {
+    return *v.formulas ? (*this)(Formulas{.optional = v.formulas}) : (*this)(v.value);
+  }
 
  private:
   template <class List>
@@ -131,6 +134,7 @@ struct TypeWords {
   }
   std::string operator()(const Formula&) const { return one() + units() + " or a formula \"= ...\""; }
   std::string operator()(const Formulas&) const { return "a list of 3 " + many() + " or formulas \"= ...\""; }
+  std::string operator()(const VectorOrFormulas&) const { return (*this)(Formulas{}); }
 
  private:
   std::string units() const { return d == Dimension::none ? "" : fmt::format(" in {}", unit_words(d)); }

@@ -43,11 +43,18 @@ struct Formulas {
   std::optional<std::array<std::string, 3>>* optional = nullptr;
 };
 
+/// Three quantities, or formulas of which `value` holds what they give at t = 0.
+struct VectorOrFormulas {
+  Vec3* value = nullptr;
+  std::optional<std::array<std::string, 3>>* formulas = nullptr;
+};
+
 /// Where the value of a key goes.
-using Slot = std::variant<bool*, int*, std::int64_t*, double*, std::optional<double>*, std::string*, Vec3*,
-                          std::vector<double>*, std::vector<int>*, std::vector<std::string>*,
-                          std::array<int, 3>*, std::array<double, 2>*, std::vector<std::array<double, 4>>*,
-                          std::vector<Vec3>*, std::optional<std::array<Vec3, 2>>*, Choice, Formula, Formulas>;
+using Slot =
+    std::variant<bool*, int*, std::int64_t*, double*, std::optional<double>*, std::string*, Vec3*,
+                 std::vector<double>*, std::vector<int>*, std::vector<std::string>*, std::array<int, 3>*,
+                 std::array<double, 2>*, std::vector<std::array<double, 4>>*, std::vector<Vec3>*,
+                 std::optional<std::array<Vec3, 2>>*, Choice, Formula, Formulas, VectorOrFormulas>;
 
 /// One entry of the schema, bound to one struct. Everything that is known of a key is here, and only here.
 struct Key {

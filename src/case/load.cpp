@@ -92,7 +92,7 @@ void fill_in(Case& c) {
 }  // namespace
 
 Case parse_case(const std::string& text, const std::string& name, const std::vector<std::string>& overrides,
-                std::vector<Problem>* warnings) {
+                std::vector<Problem>* warnings, const FurtherChecks& further) {
   check_text(text, name);
   std::vector<Problem> problems;
   Node root = parse_toml(std::make_shared<Source>(Source{name, text}), problems);
@@ -105,12 +105,16 @@ Case parse_case(const std::string& text, const std::string& name, const std::vec
   if (syntax_errors) std::erase_if(problems, [](const Problem& p) { return p.what == "missing"; });
 
   fill_in(c);
-  if (!syntax_errors && std::none_of(problems.begin(), problems.end(), concerns_a_section))
-    for (Problem& p : check_sense(c, sections_of(problems))) {
-      p.place = locate(root, p.key);
+  const auto add = [&](std::vector<Problem> more) {
+    for (Problem& p : more) {
+      if (!p.place.source) p.place = locate(root, p.key);  // else it is in another file
       if (p.severity == Severity::error) problems.push_back(std::move(p));
       else if (warnings) warnings->push_back(std::move(p));
     }
+  };
+  if (!syntax_errors && std::none_of(problems.begin(), problems.end(), concerns_a_section))
+    add(check_sense(c, sections_of(problems)));
+  if (problems.empty() && further) add(further(c));
   throw_if_any(problems);
   return c;
 }
@@ -129,6 +133,7 @@ Case with_absolute_files(Case c) {
   resolve(c.jet.source_case);
   for (BodySpec& b : c.bodies) {
     resolve(b.file);
+    resolve(b.path);
     for (std::string& file : b.files) resolve(file);
   }
   for (WallSpec& w : c.walls) resolve(w.file);
@@ -137,8 +142,8 @@ Case with_absolute_files(Case c) {
 }
 
 Case load_case(const std::string& path, const std::vector<std::string>& overrides,
-               std::vector<Problem>* warnings) {
-  return parse_case(read_file(path), path, overrides, warnings);
+               std::vector<Problem>* warnings, const FurtherChecks& further) {
+  return parse_case(read_file(path), path, overrides, warnings, further);
 }
 
 }  // namespace ejecta

@@ -1,4 +1,5 @@
 #pragma once
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -7,15 +8,19 @@
 
 namespace ejecta {
 
+/// What rooms that know more than the case alone have against it; asked when nothing else is wrong.
+using FurtherChecks = std::function<std::vector<Problem>(const Case&)>;
+
 /// Reads the case file, applies `overrides` ("run.end_time=8 ms", "body.0.velocity=[...]"; list elements by
 /// number or name), fills in what follows from other keys and checks the sense of it. Throws InputError that
 /// lists all errors of the file, each with its line. What is only unlikely to be meant goes to `warnings`.
 Case load_case(const std::string& path, const std::vector<std::string>& overrides = {},
-               std::vector<Problem>* warnings = nullptr);
+               std::vector<Problem>* warnings = nullptr, const FurtherChecks& further = {});
 
 /// The same from a text; `name` stands for the path in messages.
 Case parse_case(const std::string& text, const std::string& name,
-                const std::vector<std::string>& overrides = {}, std::vector<Problem>* warnings = nullptr);
+                const std::vector<std::string>& overrides = {}, std::vector<Problem>* warnings = nullptr,
+                const FurtherChecks& further = {});
 
 /// The folder of the case file, to which the names of files in it are relative.
 std::string folder_of(const Case& c);

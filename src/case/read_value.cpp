@@ -42,6 +42,19 @@ class ValueReader {
   bool operator()(const Formulas& f) {
     return fixed(root_, f.text ? *f.text : f.optional->emplace(), &ValueReader::formula);
   }
+  bool operator()(const VectorOrFormulas& v) {
+    std::array<std::string, 3> texts;
+    if (!fixed(root_, texts, &ValueReader::formula)) return false;
+    bool constant = true;
+    for (std::size_t d = 0; d < 3; ++d) {
+      const Expression formula(texts[d]);
+      constant = constant && formula.is_constant();
+      (*v.value)[static_cast<int>(d)] = formula(0, 0, 0, 0);
+    }
+    v.formulas->reset();
+    if (!constant) *v.formulas = texts;
+    return true;
+  }
   bool operator()(const Choice& choice) {
     std::string name;
     if (!plain<std::string>(root_, name)) return false;

@@ -121,8 +121,20 @@ std::vector<Key> keys(BodySpec& s) {
       {"mass", &s.mass, mass, positive, "Mass; inertia scales with it", "", "density times volume"},
       {"motion", choice(s.motion), none, anything, "How it moves", ""},
       {"position", &s.position, length, anything, "Centre of mass at the start", ""},
-      {"velocity", &s.velocity, velocity, anything, "Velocity at release", ""},
-      {"spin", &s.spin, angular_velocity, anything, "Angular velocity at release, world axes", ""},
+      {"velocity", VectorOrFormulas{&s.velocity, &s.velocity_formula}, velocity, anything,
+       "Velocity at release; of a prescribed body also formulas in t (s) in SI units, each starting with "
+       "\"=\"",
+       ""},
+      {"spin", VectorOrFormulas{&s.spin, &s.spin_formula}, angular_velocity, anything,
+       "Angular velocity at release, world axes; of a prescribed body also formulas in t", ""},
+      {.name = "path",
+       .slot = &s.path,
+       .help = "Prescribed: CSV file beside the case file, head `t [ms], x [mm], y [mm], z [mm], rotation "
+               "[deg]` (columns that are not needed left out); added to `position` and `rotation_angle`; "
+               "monotone cubic in between",
+       .source = "Fritsch & Butland 1984",
+       .unset = "none",
+       .example = "\"path.csv\""},
       {"rotation_axis", &s.rotation_axis, none, anything, "Axis of the initial orientation", ""},
       {"rotation_angle", &s.rotation_angle, angle, anything,
        "Angle of the initial orientation about rotation_axis", ""},

@@ -13,18 +13,19 @@ struct Part {
   std::vector<std::string> sections;  ///< what it reads
 };
 
-const std::array<Part, 12> parts{{
+const std::array<Part, 13> parts{{
     {sense_run, {"run", "environment", "fluid", "flow", "body", "splitter"}},
     {sense_grid, {"grid"}},
     {sense_boundaries, {"boundary", "environment", "flow", "grid"}},
+    {sense_turbulence, {"boundary", "initial", "flow", "grid"}},
     {sense_materials, {"material", "material_pair", "contact"}},
     {sense_shapes, {"body", "material", "launch", "run"}},
+    {sense_motion, {"body", "run"}},
     {sense_domain, {"domain", "flow"}},
     {sense_walls, {"wall", "material"}},
     {sense_sorter,
      {"run", "environment", "flow", "grid", "boundary", "valve", "jet", "launch", "splitter", "body"}},
     {sense_expectations, {"expect", "convergence", "exact", "flow"}},
-    {sense_places, {"grid", "flow", "body", "launch"}},
     {sense_overlaps, {"body", "launch"}},
     {sense_records, {"grid", "flow", "probe", "line", "slice"}},
 }};

@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
+#include <vector>
 
 #include "base/units.hpp"
+#include "case/expression.hpp"
 #include "case/extent.hpp"
 #include "case/findings.hpp"
 #include "case/schema.hpp"
@@ -59,6 +62,44 @@ void check_face(const Case& c, std::size_t f, const std::string& key, Findings& 
                 "\"symmetry\" or nothing", "type = \"symmetry\"");
 }
 
+/// The keys of a state that are formulas in place or time.
+std::vector<std::string> formulas_of(const StateSpec& s) {
+  std::vector<std::string> keys;
+  const auto look = [&](const char* key, const std::string& text) {
+    if (!Expression(text).is_constant() && (keys.empty() || keys.back() != key)) keys.push_back(key);
+  };
+  if (s.velocity)
+    for (const std::string& text : *s.velocity) look("velocity", text);
+  if (s.pressure) look("pressure", *s.pressure);
+  if (s.density) look("density", *s.density);
+  if (s.temperature) look("temperature", *s.temperature);
+  if (s.k) look("k", *s.k);
+  if (s.epsilon) look("epsilon", *s.epsilon);
+  return keys;
+}
+
+/// What bodies meet at a face, where one might expect something else.
+void check_hold(const Case& c, std::size_t f, const std::string& key, Findings& found) {
+  const BoundarySpec& face = c.boundary[f];
+  const bool free = std::any_of(c.bodies.begin(), c.bodies.end(),
+                                [](const BodySpec& b) { return b.motion == Motion::free && !b.on_belt; });
+  if (!free || c.grid.geometry == Geometry::axisymmetric) return;
+  const int axis = static_cast<int>(f / 2);
+  const double down = (f % 2 ? 1.0 : -1.0) * c.environment.gravity[axis];
+  if ((face.type == BoundaryType::slip || face.type == BoundaryType::symmetry) && c.walls.empty() &&
+      down > 0.5 * c.environment.gravity.norm())
+    found.warning(
+        key + ".type",
+        fmt::format("bodies fall through a face of type \"{}\": only fluid is held by it", word(face.type)),
+        "\"wall\", or a [[wall]] there", "type = \"wall\"");
+  const std::vector<std::string> formulas = formulas_of(face.state);
+  if (face.type == BoundaryType::moving_wall &&
+      std::find(formulas.begin(), formulas.end(), "velocity") != formulas.end())
+    found.warning(key + ".velocity",
+                  "the wall drags fluid by this formula, but bodies that touch it meet it at rest",
+                  "a velocity that is the same everywhere and always");
+}
+
 void check_patch(const PatchSpec& patch, const Box& box, std::size_t f, const std::string& key,
                  Findings& found) {
   const int axis = static_cast<int>(f / 2);
@@ -84,6 +125,13 @@ void sense_boundaries(const Case& c, Findings& found) {
   for (std::size_t f = 0; f < 6; ++f) {
     const std::string key = std::string("boundary.") + face_names[f];
     check_face(c, f, key, found);
+    check_hold(c, f, key, found);
+    for (std::size_t n = 0; n < c.boundary[f].patches.size() && !is_incompressible(c); ++n)
+      for (const std::string& formula : formulas_of(c.boundary[f].patches[n].state))
+        found.error(
+            fmt::format("{}.patch.{}.{}", key, n, formula),
+            "the compressible solvers hold the gas of a patch as it is at the start, the same all over it",
+            "a number here, or the formula on the face itself");
     for (std::size_t n = 0; n < c.boundary[f].patches.size() && box; ++n)
       check_patch(c.boundary[f].patches[n], *box, f, fmt::format("{}.patch.{}", key, n), found);
   }

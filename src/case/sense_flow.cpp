@@ -43,6 +43,9 @@ void sense_run(const Case& c, Findings& found) {
   if (c.flow.solver == FlowSolver::compressible && !c.bodies.empty())
     found.error("flow.solver", "\"compressible\" computes the air alone, not what it does to bodies",
                 "\"incompressible\" or \"compressible-piso\"", "solver = \"compressible-piso\"");
+  if (!is_incompressible(c) && !c.flow.body_force.isZero())
+    found.error("flow.body_force", "the compressible solvers know no force on the gas",
+                "no body_force, or an incompressible flow", "solver = \"incompressible\"");
   if (!c.fluid.ideal_gas && c.fluid.density <= 0.0)
     found.error("fluid.density", "a fluid that is no ideal gas needs its density", "a density, more than 0",
                 "density = \"998 kg/m3\"");

@@ -90,11 +90,23 @@ double smallest_radius(const Solid& s) {
 
 void sense_overlaps(const Case& c, Findings& found) {
   constexpr double allowed = 0.05;  // of the smaller radius: bodies resting on each other do overlap a little
+  const BodySpec* first = nullptr;
+  for (std::size_t n = 0; n < c.bodies.size(); ++n) {
+    if (!c.bodies[n].on_belt) continue;
+    if (first)
+      found.error(
+          fmt::format("body.{}.on_belt", n),
+          fmt::format("\"{}\" and \"{}\" would start in the same place: [launch] is one for all bodies",
+                      first->name, c.bodies[n].name),
+          "one body on_belt; the place and velocity of each other one",
+          R"(position = ["-40 mm", "0 mm", "79 mm"], velocity = ["3 m/s", "0 m/s", "-0.2 m/s"])");
+    else first = &c.bodies[n];
+  }
   std::vector<Solid> solids;
   for (const BodySpec& b : c.bodies) solids.push_back(solid(b));
   for (std::size_t i = 0; i < solids.size(); ++i)
     for (std::size_t j = 0; j < i; ++j) {
-      if (c.bodies[i].on_belt != c.bodies[j].on_belt) continue;
+      if (c.bodies[i].on_belt || c.bodies[j].on_belt) continue;  // not at their `position`
       const auto comes_later = [](const BodySpec& b) { return b.enters_at || b.copies > 1; };
       if (comes_later(c.bodies[i]) || comes_later(c.bodies[j])) continue;
       const double depth = overlap(solids[i], solids[j]);

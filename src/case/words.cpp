@@ -73,9 +73,10 @@ const std::vector<Word>& words(ShapeKind) {
 }
 
 const std::vector<Word>& words(Motion) {
-  static const std::vector<Word> list{{"free", "moves under all forces"},
-                                      {"fixed", "stays where it is"},
-                                      {"prescribed", "keeps its velocity and spin whatever acts"}};
+  static const std::vector<Word> list{
+      {"free", "moves under all forces"},
+      {"fixed", "stays where it is"},
+      {"prescribed", "goes its way by `velocity` and `spin`, or by `path`, whatever acts"}};
   return list;
 }
 

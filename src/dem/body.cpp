@@ -73,10 +73,18 @@ Body make_body(const BodySpec& spec, const Materials& materials, const std::stri
     body.enters_at = spec.enters_at;
     body.position = spec.position;
     if (!(spec.rotation_axis.norm() > 0)) throw InputError("rotation_axis must not be zero");
-    body.orientation = Quat(Eigen::AngleAxisd(spec.rotation_angle, spec.rotation_axis.normalized())) *
-                       body.shape.frame().rotation;
+    double angle = spec.rotation_angle;
     body.velocity = spec.velocity;
     body.angular_velocity = spec.spin;
+    if (body.motion == Motion::prescribed) {
+      body.course = make_course(spec, directory);
+      body.position += body.course->first_way();
+      angle += body.course->first_angle();
+      body.velocity = body.course->velocity(0.0);
+      body.angular_velocity = body.course->spin(0.0);
+    }
+    body.orientation =
+        Quat(Eigen::AngleAxisd(angle, spec.rotation_axis.normalized())) * body.shape.frame().rotation;
     return body;
   } catch (const InputError& e) {
     throw InputError(fmt::format("body \"{}\": {}", spec.name, e.what()));

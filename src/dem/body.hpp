@@ -1,9 +1,11 @@
 #pragma once
+#include <memory>
 #include <optional>
 #include <string>
 
 #include "base/vec.hpp"
 #include "case/case.hpp"
+#include "dem/course.hpp"
 #include "dem/materials.hpp"
 #include "shape/shape.hpp"
 
@@ -18,12 +20,13 @@ struct Body {
   Vec3 inertia{0, 0, 0};  ///< kg m2, principal moments in body axes
   int material = 0;       ///< index into the materials
   Motion motion = Motion::free;
-  double release_at = 0.0;              ///< s; until then the body rests as placed
-  std::optional<double> enters_at;      ///< s; until then, and while its place is taken, it is not there
-  Vec3 position{0, 0, 0};               ///< m, centre of mass
-  Quat orientation = Quat::Identity();  ///< body axes -> world
-  Vec3 velocity{0, 0, 0};               ///< m/s
-  Vec3 angular_velocity{0, 0, 0};       ///< rad/s
+  std::shared_ptr<const Course> course;  ///< of a prescribed body
+  double release_at = 0.0;               ///< s; until then the body rests as placed
+  std::optional<double> enters_at;       ///< s; until then, and while its place is taken, it is not there
+  Vec3 position{0, 0, 0};                ///< m, centre of mass
+  Quat orientation = Quat::Identity();   ///< body axes -> world
+  Vec3 velocity{0, 0, 0};                ///< m/s
+  Vec3 angular_velocity{0, 0, 0};        ///< rad/s
 
   Vec3 velocity_at(const Vec3& point) const { return velocity + angular_velocity.cross(point - position); }
   Vec3 to_world(const Vec3& p) const { return position + orientation * p; }

@@ -69,10 +69,11 @@ void Particles::advance(double dt, std::span<const Load> loads) {
 void Particles::release(std::size_t n) {
   Launch& launch = launches_[n];
   if (!launch.waiting) return;
+  Body& b = bodies_[n];
   launch.waiting = false;
-  bodies_[n].velocity = launch.velocity;
-  bodies_[n].angular_velocity = launch.spin;
-  momentum_[n] = bodies_[n].angular_momentum();
+  b.velocity = b.course ? b.course->velocity(time_) : launch.velocity;
+  b.angular_velocity = b.course ? b.course->spin(time_) : launch.spin;
+  momentum_[n] = b.angular_momentum();
 }
 
 void Particles::pack_spheres() {
@@ -81,7 +82,7 @@ void Particles::pack_spheres() {
   packed_.resize(bodies_.size());
   for (std::size_t n = 0; n < bodies_.size(); ++n) {
     const Body& b = bodies_[n];
-    if (moves(n)) release(n);
+    if (b.motion == Motion::free && moves(n)) release(n);
     packed_[n] = b.motion == Motion::free && moves(n) && parts_.is_sphere(static_cast<int>(n));
     if (packed_[n])
       spheres_[n] = {vec4(b.velocity) + Vec4{0, 0, 0, 1 / b.mass},
@@ -159,7 +160,7 @@ void Particles::move_bodies(double dt, std::span<const Load> loads, bool kick, b
         }
       } else {
         if (kick) kick_body(i, loads, dt, work);
-        if (drift) others.note(drift_body(i, loads, dt));
+        if (drift) others.note(drift_body(i, loads, dt, work));
       }
     }
     work.into_contacts -= (by_contacts[0] + by_contacts[1]) + by_contacts[2];
@@ -169,6 +170,7 @@ void Particles::move_bodies(double dt, std::span<const Load> loads, bool kick, b
     block_moved_[static_cast<std::size_t>(block)] = others;
     block_work_[static_cast<std::size_t>(block)] = work;
   });
+  for (const Work& work : block_work_) outer_work_ += work.driven;
   if (!kick) return;
   // With velocities at the whole step, half of this power over dt before it and half after is exactly the
   // change of kinetic energy.
@@ -181,15 +183,22 @@ void Particles::move_bodies(double dt, std::span<const Load> loads, bool kick, b
 }
 
 /// Returns how far a part of the body may have moved since the listing, m.
-double Particles::drift_body(int index, std::span<const Load> loads, double dt) {
+double Particles::drift_body(int index, std::span<const Load> loads, double dt, Work& work) {
   const std::size_t n = static_cast<std::size_t>(index);
   Body& b = bodies_[n];
   double moved = 0.0;
-  if (moves(n)) {
+  if (moves(n) && b.course) {
+    work.driven -= b.kinetic_energy();  // with what kick_body adds: the change
     release(n);
-    const bool pushed = b.motion == Motion::free;
-    const Vec3 kick = pushed ? Vec3(0.5 * dt * acceleration(n, loads)) : Vec3(0, 0, 0);
-    const Vec3 twist = pushed ? Vec3(0.5 * dt * torque_on(n, loads)) : Vec3(0, 0, 0);
+    b.position += b.course->way(time_, dt);
+    b.course->turn(b.orientation, time_, dt);
+    velocity_[n] = b.course->velocity(time_ + dt);
+    spin_[n] = b.course->spin(time_ + dt);
+    turned_[n] += dt * std::max(b.angular_velocity.norm(), spin_[n].norm()) * parts_.arm(index);
+    moved = (b.position - listed_at_[n]).norm() + turned_[n];
+  } else if (moves(n)) {
+    release(n);
+    const Vec3 kick = 0.5 * dt * acceleration(n, loads), twist = 0.5 * dt * torque_on(n, loads);
     b.velocity += kick;
     momentum_[n] += twist;
     b.position += dt * b.velocity;
@@ -294,8 +303,13 @@ void Particles::kick_body(int index, std::span<const Load> loads, double dt, Wor
   if (pushed) {
     b.velocity += 0.5 * dt * acceleration(n, loads);
     momentum_[n] += 0.5 * dt * torque_on(n, loads);
+    b.angular_velocity = angular_velocity(b.orientation, momentum_[n], b.inertia);
+  } else {
+    b.velocity = b.course->velocity(time_);
+    b.angular_velocity = b.course->spin(time_);
+    momentum_[n] = b.angular_momentum();
+    work.driven += b.kinetic_energy();
   }
-  b.angular_velocity = angular_velocity(b.orientation, momentum_[n], b.inertia);
   const double by_contacts = force_[n].dot(b.velocity) + torque_[n].dot(b.angular_velocity);
   work.into_contacts -= by_contacts;
   if (!pushed) work.from_outside -= by_contacts;  // what keeps a prescribed body on its course

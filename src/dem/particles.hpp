@@ -99,8 +99,9 @@ class Particles {
   void collect_solids();
   struct Work {
     double into_contacts = 0.0, from_outside = 0.0;  // W
+    double driven = 0.0;                             // J, what speeds prescribed bodies up
   };
-  double drift_body(int index, std::span<const Load> loads, double dt);
+  double drift_body(int index, std::span<const Load> loads, double dt, Work& work);
   void kick_body(int index, std::span<const Load> loads, double dt, Work& work);
   void release(std::size_t n);
   void pack_spheres();

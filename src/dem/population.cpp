@@ -15,6 +15,9 @@
 namespace ejecta {
 namespace {
 
+/// Added to the stored presence of a body that its release has not moved yet: the time alone does not tell.
+constexpr int kWaitsForRelease = 3;
+
 void append(std::vector<double>& out, const Vec3& v) { out.insert(out.end(), v.data(), v.data() + 3); }
 
 }  // namespace
@@ -23,6 +26,8 @@ int Particles::add(Body body) {
   if (!(body.mass > 0) || !(body.inertia.minCoeff() > 0))
     throw InputError(
         fmt::format("body \"{}\": mass {} kg and moments of inertia must be positive", body.name, body.mass));
+  if (body.motion == Motion::prescribed && !body.course)
+    body.course = std::make_shared<Course>(body.velocity, body.angular_velocity);
   const int index = static_cast<int>(bodies_.size());
   presence_.push_back(body.enters_at ? Presence::waiting : Presence::here);
   launches_.push_back({body.enters_at || time_ < body.release_at, body.velocity, body.angular_velocity});
@@ -185,7 +190,8 @@ std::vector<double> Particles::state() const {
     append(s, momentum_[n]);
     append(s, force_[n]);
     append(s, torque_[n]);
-    s.insert(s.end(), {peaks_[n].overlap, peaks_[n].force, peaks_[n].time, double(presence_[n])});
+    s.insert(s.end(), {peaks_[n].overlap, peaks_[n].force, peaks_[n].time});
+    s.push_back(double(presence_[n]) + (launches_[n].waiting ? kWaitsForRelease : 0));
   }
   balls_.save(s);
   solids_.save(s);
@@ -212,10 +218,12 @@ void Particles::restore(std::span<const double> s) {
     peaks_[n].overlap = in.number();
     peaks_[n].force = in.number();
     peaks_[n].time = in.number();
-    presence_[n] = static_cast<Presence>(in.whole(0, static_cast<int>(Presence::gone)));
+    const auto there = static_cast<int>(in.whole(0, static_cast<int>(Presence::gone) + kWaitsForRelease));
+    presence_[n] = static_cast<Presence>(there % kWaitsForRelease);
     parts_.set_here(static_cast<int>(n), presence_[n] == Presence::here);
-    launches_[n].waiting = time_ < b.release_at || presence_[n] == Presence::waiting;
+    launches_[n].waiting = there >= kWaitsForRelease;
     b.angular_velocity = angular_velocity(b.orientation, momentum_[n], b.inertia);
+    if (b.course && !launches_[n].waiting) b.angular_velocity = b.course->spin(time_);
     parts_.update(static_cast<int>(n), b, b.velocity, b.angular_velocity);
   }
   balls_.load(in, parts_.ball_count());

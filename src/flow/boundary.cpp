@@ -155,10 +155,10 @@ void Boundaries::fill_pressure(FieldView p, const std::array<FieldView, 3>& q, b
     if (boundary.kind == BoundaryKind::mirror || boundary.kind == BoundaryKind::periodic) {
       fill_side<1>({p}, s, boundary.kind == BoundaryKind::periodic, kCopy);
     } else if (boundary.kind == BoundaryKind::open) {
-      const Real fixed = total ? static_cast<Real>(boundary.pressure) : Real(0);
       const Real dynamic = total && boundary.total_pressure ? Real(0.5) : Real(0);
       const Real* through_face = q[static_cast<std::size_t>(s.d)].origin + s.face;
-      fill_side<1>({p}, s, false, [=](std::size_t, int, int a, int b, std::ptrdiff_t, Real inner) {
+      fill_side<1>({p}, s, false, [=, this](std::size_t, int, int a, int b, std::ptrdiff_t, Real inner) {
+        const Real fixed = total ? at(face, a, b).pressure : Real(0);
         const Real through = through_face[s.cell(a, b)];
         const bool enters = s.upper ? through < 0 : through > 0;
         return Real(2) * (fixed - (enters ? dynamic * through * through : Real(0))) - inner;

@@ -14,18 +14,17 @@ namespace ejecta {
 enum class BoundaryKind { inflow, wall, mirror, open, periodic };
 
 /// What comes in through a boundary: velocity (m/s), turbulent kinetic energy (m2/s2) and the second
-/// turbulence variable (epsilon, m2/s3, or omega, 1/s).
+/// turbulence variable (epsilon, m2/s3, or omega, 1/s). Open: p / rho where fluid leaves, m2/s2 gauge.
 struct BoundaryState {
   std::array<Real, 3> velocity{0, 0, 0};
-  Real k = 0, second = 0;
+  Real k = 0, second = 0, pressure = 0;
 };
 
 struct Boundary {
   BoundaryKind kind = BoundaryKind::wall;
   std::function<BoundaryState(const Vec3& position, double time)> state;  ///< empty: at rest
   bool varies = false;                                                    ///< state depends on time
-  double pressure = 0.0;        ///< open: p / rho on the face where fluid leaves, m2/s2 gauge
-  bool total_pressure = false;  ///< open: `pressure` is the stagnation value where fluid enters
+  bool total_pressure = false;  ///< open: the state's pressure is the stagnation value where fluid enters
 };
 
 /// The six boundaries with their states on every face cell, refreshed once a stage.

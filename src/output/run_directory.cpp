@@ -48,7 +48,7 @@ void check_finite(const nlohmann::ordered_json& value, const std::string& key) {
 
 fs::path RunDirectory::default_path(const fs::path& case_path) { return case_path.stem().string() + ".run"; }
 
-RunDirectory RunDirectory::create(const fs::path& path, bool force) {
+void RunDirectory::require_creatable(const fs::path& path, bool force) {
   std::error_code failed;
   if (fs::exists(path, failed)) {
     if (!fs::is_directory(path))
@@ -64,6 +64,13 @@ RunDirectory RunDirectory::create(const fs::path& path, bool force) {
     if (!is_run && !is_empty)
       throw InputError(fmt::format(
           "{} holds files that are not of a run; choose another place with --out DIR", path.string()));
+  }
+}
+
+RunDirectory RunDirectory::create(const fs::path& path, bool force) {
+  require_creatable(path, force);
+  std::error_code failed;
+  if (fs::exists(path, failed)) {
     for (const char* name : kContents) {
       fs::remove_all(path / name, failed);
       if (failed) refuse(path, failed);
@@ -98,8 +105,9 @@ void RunDirectory::write_manifest(const nlohmann::ordered_json& manifest) const 
 }
 
 void RunDirectory::write_result(const nlohmann::ordered_json& result) const {
+  write_file(path_ / "result.json",
+             json_text(result) + '\n');  // what is no number becomes null: the rest counts
   check_finite(result, "");
-  write_file(path_ / "result.json", json_text(result) + '\n');
 }
 
 }  // namespace ejecta::output

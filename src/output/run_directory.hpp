@@ -28,6 +28,9 @@ class RunDirectory {
   /// when it holds anything that is not a run, or when it cannot be made or written. With `force` only files
   /// of a run are removed.
   static RunDirectory create(const std::filesystem::path& path, bool force);
+  /// Throws what create() would throw and changes nothing: for those who want to know before long work, and
+  /// must not lose a run to a case that then cannot start.
+  static void require_creatable(const std::filesystem::path& path, bool force);
   /// An existing one; throws InputError when `path` is not the directory of a run.
   static RunDirectory open(const std::filesystem::path& path);
 
@@ -41,7 +44,7 @@ class RunDirectory {
 
   void write_case(std::string_view toml) const;
   void write_manifest(const nlohmann::ordered_json& manifest) const;
-  /// Throws DivergedError, with the key, when a number is not finite.
+  /// A number that is not finite is written as null, and then told: throws DivergedError with its key.
   void write_result(const nlohmann::ordered_json& result) const;
 
  private:

@@ -13,7 +13,6 @@ namespace ejecta {
 namespace {
 
 constexpr double kRound = 1e-5;  // of the volume: what the 32-bit corners of an STL file may take or add
-constexpr double kCrumb = 0.05;  // of the largest part: smaller ones are no feature of the solid
 
 /// Vertices of each piece of the mesh that hangs together.
 std::vector<std::vector<int>> pieces_of(const TriangleMesh& mesh) {

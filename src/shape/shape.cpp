@@ -90,6 +90,26 @@ Vec3 Shape::support(const Vec3& direction) const {
                     data_->geometry);
 }
 
+std::vector<Width> Shape::widths() const {
+  if (!balls().empty()) return {{Vec3(0, 0, 0), smallest_feature()}};
+  std::vector<Width> list;
+  double largest = 0.0;
+  for (const Polytope& p : polytopes()) largest = std::max(largest, volume_polytope(p));
+  for (const Polytope& p : polytopes()) {
+    if (volume_polytope(p) <= kCrumb * largest) continue;
+    const std::size_t first = list.size();
+    for (const Polytope::Face& f : p.faces) {
+      const double size = f.offset - f.normal.dot(support_polytope(p, -f.normal));
+      const bool known =
+          std::any_of(list.begin() + static_cast<std::ptrdiff_t>(first), list.end(), [&](const Width& w) {
+            return std::abs(w.direction.dot(f.normal)) > 1 - 1e-12 && w.size <= size * (1 + 1e-9);
+          });
+      if (!known) list.push_back({f.normal, size});
+    }
+  }
+  return list;
+}
+
 double Shape::projected_area(const Vec3& direction) const {
   const Vec3 d = direction.normalized().cwiseAbs();
   return std::visit(Overloaded{[&](const BallsGeometry& g) { return area_balls(g.balls, direction); },

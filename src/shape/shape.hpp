@@ -20,6 +20,12 @@ struct BodyFrame {
   Quat rotation = Quat::Identity();
 };
 
+/// How thick a part of a solid is along a direction.
+struct Width {
+  Vec3 direction{0, 0, 0};  ///< unit, body axes; zero: along any
+  double size = 0.0;        ///< m
+};
+
 /// A rigid solid. A value, cheap to copy (the data are shared and never change). Body axes have their origin
 /// in the centre of mass and are the principal axes; a shape whose axes are principal already keeps them.
 /// Lengths in m.
@@ -38,6 +44,9 @@ class Shape {
   /// Diameter of the smallest sphere, shortest edge of a box, smallest width of anything else: what a grid
   /// must resolve.
   double smallest_feature() const;
+  /// Its widths between parallel faces, each in its direction (of balls the smallest diameter): what a grid
+  /// must resolve there.
+  std::vector<Width> widths() const;
   /// Unit density, body axes: the centre is the origin, the inertia diagonal.
   const MassProperties& mass_properties() const;
   /// Area of the shadow along `direction`, m2.

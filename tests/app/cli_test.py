@@ -112,6 +112,28 @@ class CommandLine(unittest.TestCase):
         self.assertIn("is a file", ejecta("report", self.case()).stderr)
         self.assertEqual(ejecta("run", self.case(), "--threads", "0").returncode, 2)
 
+    def test_check_says_where_a_prescribed_body_goes(self):
+        swing = BOUNCE.replace("1 ms", "100 ms") + (
+            'motion = "prescribed"\nvelocity = ["= 0.2 * cos(100 * t)", "0 m/s", "0 m/s"]\n'
+        )
+        answer = ejecta("check", self.case(swing))
+        self.assertEqual(answer.returncode, 0, answer.stderr)
+        self.assertIn("10 x 10 x 10 mm, 1.41 g", answer.stdout)
+        self.assertIn("goes its way in x -2 to 2, y 0, z 0 mm, up to 0.2 m/s, to (-1.088, 0, 0) mm", answer.stdout)
+        self.assertEqual(ejecta("run", self.case(swing), "--quiet", "--out", "swing.run").returncode, 0)
+        body = json.loads(pathlib.Path("swing.run/result.json").read_text())["bodies"][0]
+        self.assertAlmostEqual(body["final_position_m"][0], -1.0880422e-3, 9)
+
+    def test_a_body_that_sticks_into_an_inflow_is_refused_by_check_and_run_alike(self):
+        inside = STREAM.replace("cells = [10]", "cells = [40]") + (
+            '[[body]]\nname = "ball"\ndiameter = "6 mm"\nposition = ["2 mm", "0.5 mm", "10 mm"]\n'
+        )
+        for command in ("check", "run"):
+            answer = ejecta(command, self.case(inside))
+            self.assertEqual(answer.returncode, 2, command)
+            self.assertRegex(answer.stderr, r"case.toml:4\d: error: body.0.position: the body sticks 1 mm out of the box")
+            self.assertIn("^", answer.stderr)
+
     def test_a_wrong_case_is_bad_input_with_the_line(self):
         for command in ("run", "check", "plan"):
             with self.subTest(command):
@@ -184,6 +206,17 @@ class CommandLine(unittest.TestCase):
         self.assertEqual(ejecta("run", case, "--quiet").returncode, 2)
         self.assertEqual(pathlib.Path("case.run/result.json").read_text(), before)
         self.assertEqual(ejecta("run", case, "--quiet", "--force").returncode, 0)
+
+    def test_a_case_that_cannot_start_neither_clears_a_run_nor_leaves_a_folder(self):
+        self.assertEqual(ejecta("run", self.case(), "--quiet").returncode, 0)
+        before = pathlib.Path("case.run/result.json").read_text()
+        # Overlaps are found where the bodies are put in their places.
+        wall = '[[wall]]\nname = "floor"\nmaterial = "stone"\n'
+        broken = self.case(BOUNCE + 'material = "stone"\n[[material]]\nname = "stone"\n' + wall)
+        self.assertEqual(ejecta("run", broken, "--quiet", "--force").returncode, 2)
+        self.assertEqual(pathlib.Path("case.run/result.json").read_text(), before)
+        self.assertEqual(ejecta("run", broken, "--quiet", "--out", "new.run").returncode, 2)
+        self.assertFalse(pathlib.Path("new.run").exists())
 
     def test_the_resolved_case_of_a_run_can_be_run_again(self):
         self.assertEqual(ejecta("run", self.case(), "--quiet").returncode, 0)

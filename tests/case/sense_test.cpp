@@ -3,10 +3,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <fstream>
+
 #include "base/error.hpp"
 #include "case/extent.hpp"
 #include "case/load.hpp"
 #include "case/template.hpp"
+#include "scratch_directory.hpp"
 
 using namespace ejecta;
 using testing::Contains;
@@ -46,15 +49,24 @@ TEST(Sense, TheOffsetAlongTheBeltShiftsTheMeeting) {
               Contains(HasSubstr("misses")));
 }
 
-TEST(Sense, FewCellsAcrossABody) {
-  EXPECT_THAT(warnings({"body.0.size=[\"10 mm\", \"10 mm\", \"6 mm\"]"}),
-              Contains(HasSubstr("6 cells across")));
+TEST(Sense, ABodyThatIsNeverReleased) {
+  EXPECT_THAT(warnings({"body.0.release_at=2 s"}, "settling"), Contains(HasSubstr("never released")));
 }
 
-TEST(Sense, ABodyThatStartsOutsideOrNeverStarts) {
-  EXPECT_THAT(warnings({"body.0.position=[\"1 m\", \"0 m\", \"0 m\"]"}, "settling"),
-              Contains(HasSubstr("starts outside")));
-  EXPECT_THAT(warnings({"body.0.release_at=2 s"}, "settling"), Contains(HasSubstr("never released")));
+/// What is wrong in a file of a path is shown there, under the key that names the file.
+TEST(Sense, AWrongPathFileIsShownWithItsLine) {
+  const ScratchDirectory scratch;
+  std::ofstream(scratch / "path.csv") << "t [ms], z [mm]\n0, 0\n5; 1\n";
+  try {
+    parse_case(
+        "[run]\nend_time = \"1 ms\"\n[flow]\nsolver = \"none\"\n[[body]]\ndiameter = \"1 mm\"\n"
+        "motion = \"prescribed\"\npath = \"path.csv\"\n",
+        (scratch / "case.toml").string());
+    FAIL() << "was accepted";
+  } catch (const InputError& e) {
+    EXPECT_THAT(e.what(), HasSubstr("path.csv:3: error: body.0.path: 1 values for 2 columns"));
+    EXPECT_THAT(e.what(), HasSubstr("    3 | 5; 1\n      | ^~~~"));
+  }
 }
 
 TEST(Sense, ALaunchWithoutABody) {

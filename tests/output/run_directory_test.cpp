@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <fstream>
 
 #include "base/error.hpp"
 #include "output/output_file.hpp"
@@ -63,17 +64,20 @@ TEST(RunDirectory, FileInTheWayOrImpossiblePlaceIsNamed) {
   EXPECT_THAT(message_of([&] { RunDirectory::open(dir.path()); }), HasSubstr("manifest.json"));
 }
 
-TEST(RunDirectory, NanNeverReachesAResult) {
+TEST(RunDirectory, NanBecomesNullAndIsTold) {
   const ScratchDirectory dir;
   const RunDirectory run = RunDirectory::create(dir / "a.run", false);
-  nlohmann::ordered_json result{{"bodies", {{{"mean_force_N", {0.0, std::nan(""), 0.0}}}}}};
+  nlohmann::ordered_json result{{"bodies", {{{"mean_force_N", {0.0, std::nan(""), 0.0}}}}}, {"steps", 7}};
   try {
     run.write_result(result);
-    FAIL() << "NaN was written";
+    FAIL() << "NaN was not told";
   } catch (const DivergedError& e) {
     EXPECT_THAT(e.what(), HasSubstr("/bodies/0/mean_force_N/1"));
   }
-  EXPECT_FALSE(std::filesystem::exists(run.path() / "result.json"));
+  std::ifstream file(run.path() / "result.json");
+  const auto written = nlohmann::json::parse(file);  // and what the run found besides is not lost
+  EXPECT_TRUE(written["bodies"][0]["mean_force_N"][1].is_null());
+  EXPECT_EQ(written["steps"], 7);
 }
 
 TEST(Manifest, SaysWhereAndByWhat) {

@@ -4,7 +4,7 @@
 
 #include <cstdio>
 
-#include "case/load.hpp"
+#include "app/body_checks.hpp"
 
 namespace ejecta {
 
@@ -24,7 +24,7 @@ void add_threads(CLI::App& command, int& threads) {
 
 Case load_and_warn(const CaseOptions& options, bool quiet) {
   std::vector<Problem> warnings;
-  Case c = load_case(options.path, options.overrides, &warnings);
+  Case c = load_checked(options.path, options.overrides, &warnings);
   if (!quiet)
     for (const Problem& p : warnings) fmt::print(stderr, "{}\n", render(p));
   return c;

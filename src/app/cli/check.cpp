@@ -3,11 +3,11 @@
 #include <cstdio>
 #include <memory>
 
+#include "app/body_checks.hpp"
 #include "app/cli/commands.hpp"
 #include "app/cli/input_error.hpp"
 #include "app/exit_code.hpp"
 #include "app/forecast.hpp"
-#include "case/load.hpp"
 
 namespace ejecta {
 
@@ -31,7 +31,7 @@ void add_check(CLI::App& app, Action& action) {
       for (const std::string& path : o->cases) {
         try {
           std::vector<Problem> warnings;
-          const Case c = load_case(path, o->overrides, &warnings);
+          const Case c = load_checked(path, o->overrides, &warnings);
           fmt::print("{}\n", check_report(c, warnings, bandwidth));
         } catch (const InputError& e) {
           print_input_error(e);

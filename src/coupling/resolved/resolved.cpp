@@ -196,11 +196,11 @@ bool ResolvedCoupling::any_inside(std::span<const Body> bodies) const {
 
 std::vector<double> ResolvedCoupling::state() const {
   std::vector<double> out;
-  for (const Before& m : motion_) {
-    for (int d = 0; d < 3; ++d) out.push_back(m.velocity[d]);
-    for (int d = 0; d < 3; ++d) out.push_back(m.angular_momentum[d]);
-    for (int d = 0; d < 3; ++d) out.push_back(m.push.force[d]);
-    for (int d = 0; d < 3; ++d) out.push_back(m.push.torque[d]);
+  for (std::size_t b = 0; b < motion_.size(); ++b) {
+    const Before& m = motion_[b];
+    for (const Vec3& v : {m.velocity, m.angular_momentum, m.push.force, m.push.torque, parts_[b].pressure,
+                          parts_[b].friction})
+      out.insert(out.end(), v.data(), v.data() + 3);
     out.push_back(m.known);
   }
   return out;
@@ -208,13 +208,13 @@ std::vector<double> ResolvedCoupling::state() const {
 
 void ResolvedCoupling::restore(std::span<const double> state) {
   StateReader in(state, "forces on the bodies");
-  motion_.resize(state.size() / 13);
-  for (Before& m : motion_) {
-    m.velocity = in.vec3();
-    m.angular_momentum = in.vec3();
-    m.push.force = in.vec3();
-    m.push.torque = in.vec3();
-    m.known = in.whole(0, 1) == 1;
+  motion_.resize(state.size() / 19);
+  parts_.resize(motion_.size());
+  for (std::size_t b = 0; b < motion_.size(); ++b) {
+    for (Vec3* v : {&motion_[b].velocity, &motion_[b].angular_momentum, &motion_[b].push.force, &motion_[b].push.torque,
+                    &parts_[b].pressure, &parts_[b].friction})
+      *v = in.vec3();
+    motion_[b].known = in.whole(0, 1) == 1;
   }
   in.end();
 }

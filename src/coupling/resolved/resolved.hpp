@@ -46,7 +46,7 @@ class ResolvedCoupling {
   const std::vector<ForceParts>& parts() const { return parts_; }
   /// False once no body touches the box.
   bool any_inside(std::span<const Body> bodies) const;
-  /// Velocities of the last collection, for checkpoints.
+  /// Velocities and forces of the last collection, for checkpoints.
   std::vector<double> state() const;
   void restore(std::span<const double> state);
 

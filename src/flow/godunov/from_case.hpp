@@ -1,8 +1,11 @@
 #pragma once
+#include <array>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "case/case.hpp"
+#include "case/expression.hpp"
 #include "flow/godunov/gas_flow.hpp"
 
 namespace ejecta::godunov {
@@ -10,8 +13,23 @@ namespace ejecta::godunov {
 /// What a case asks of the compressible solver.
 Options options_from_case(const Case& c);
 
-/// Gas of a StateSpec at a point and time; what it leaves open is the environment's. A turbulent quantity
-/// left open is nearly none.
+/// Gas of a StateSpec over place and time, compiled once; what it leaves open is the environment's. A
+/// turbulent quantity left open is nearly none.
+class GasFormula {
+ public:
+  GasFormula(const Case& c, const StateSpec& spec);
+  GasState at(const Vec3& position, double time) const;
+  bool is_constant() const;
+  bool uses_time() const;
+
+ private:
+  const Case& case_;
+  std::optional<Expression> pressure_, temperature_, density_, k_, epsilon_;
+  std::optional<std::array<Expression, 3>> velocity_;
+  template <class Visit>
+  bool any(const Visit& visit) const;
+};
+/// The same, once.
 GasState gas_state(const Case& c, const StateSpec& spec, const Vec3& position, double time);
 
 /// omega = epsilon / (beta* k), 1/s
@@ -25,6 +43,28 @@ struct DrivenInlet {
   int handle = 0;
   Vec3 centre{0, 0, 0};
   double radius = 0.0;  ///< m
+};
+
+/// The faces whose gas is a formula in place or time, their patches apart. A whole face of type "jet" is not
+/// among them.
+class FormulaFaces {
+ public:
+  explicit FormulaFaces(const Case& c, const Grid& grid);
+  bool vary() const { return vary_; }  ///< with time
+  /// Lets every cell of these faces have its gas at `time`.
+  void apply(double time, GasFlow& flow) const;
+  /// The most that the gas outside becomes faster than at `time`, or is pushed by more pressure, within the
+  /// step to `time` + dt; as a Courant number.
+  double change(double time, double dt) const;
+
+ private:
+  struct Face {
+    int face;
+    GasFormula formula;
+  };
+  const Grid& grid_;
+  std::vector<Face> faces_;
+  bool vary_ = false;
 };
 
 /// The solver that flow.solver names, with its boundaries and initial state. An orifice is a total-pressure

@@ -69,6 +69,31 @@ struct IncrementKernel {
   }
 };
 
+/// What a pressure that is only coming up will do is seen in what the last step did: dt (r + g dt) = 1 with
+/// the velocity's growth in it. One that made |u| smaller does not count.
+struct GrowthKernel {
+  BlockView<const Real> w, start;  ///< primitive now, conserved at the beginning of the step
+  const Real* inside_solid;
+  std::array<const Real*, 3> inv_width;
+  std::array<bool, 3> active;
+  Real inv_last;  ///< 1/s
+
+  EJECTA_KERNEL Real operator()(int i, int j, int k) const {
+    const std::ptrdiff_t o = w.offset(i, j, k);
+    const std::array<int, 3> index{i, j, k};
+    const Real inv_rho = 1 / start.at(kRho, o);
+    Real r = 0, g = 0;
+    for (std::size_t d = 0; d < 3; ++d) {
+      if (!active[d]) continue;
+      const Real h = inv_width[d][index[d]], u = w.origin[kU + d][o];
+      const Real change = u - start.origin[kU + d][o] * inv_rho;
+      r += std::abs(u) * h;
+      g += u * change >= 0 || std::abs(change) > std::abs(u) ? std::abs(change) * h : Real(0);
+    }
+    return inside_solid[o] > 0 ? Real(0) : Real(0.5) * (r + std::sqrt(r * r + 4 * g * inv_last));
+  }
+};
+
 template <class P>
 struct PrimitiveKernel {
   BlockView<const Real> u;
@@ -106,11 +131,29 @@ double Compressible::stable_dt(double courant) {
                                               diffusion_,
                                               axes(),
                                               {grid_.active(0), grid_.active(1), grid_.active(2)}});
-  const double both = double(flow) + double(diffusive);
-  if (!std::isfinite(both)) report_divergence();
+  measure_growth();
+  const double faster = std::max(double(flow), growth_), both = faster + double(diffusive);
+  if (!std::isfinite(double(flow) + both)) report_divergence();
   largest_nu_ = double(nu);
-  explicit_dt_ = 1.0 / std::max(both, 1e-30);
-  return courant / std::max(turbulent() ? double(flow) : both, 1e-30);
+  explicit_dt_ = 1.0 / std::max(double(flow) + double(diffusive), 1e-30);
+  return courant / std::max(turbulent() ? faster : both, 1e-30);
+}
+
+void Compressible::measure_growth() {
+  if (growth_ >= 0.0) return;
+  growth_ = double(reduce_max(
+      grid_.range(),
+      GrowthKernel{view_block<const Real>(w_),
+                   view_block<const Real>(start_),
+                   inside_solid_.view().origin,
+                   {geometry_.axis(0).inv_width, geometry_.axis(1).inv_width, geometry_.axis(2).inv_width},
+                   {grid_.active(0), grid_.active(1), grid_.active(2)},
+                   Real(1.0 / acoustic_.last_dt())}));
+}
+
+std::vector<double*> Compressible::state_numbers() {
+  measure_growth();
+  return {&acoustic_.last_dt(), &growth_};
 }
 
 /// All conserved components by the same operator: were the density left out, the velocity of gas of uneven
@@ -234,6 +277,7 @@ void Compressible::advance(double dt, SolidMask& solids) {
   if (turbulent()) still_solids(solids, Real(dt));
   boundaries_.fill(w_);
   with_physics([&](auto physics) { step<decltype(physics)>(dt, solids); });
+  growth_ = -1.0;
   for (std::size_t n = 0; n < solids.cells.size(); ++n) {
     ledger().momentum_of_solids += Vec3(solids.impulse[n][0], solids.impulse[n][1], solids.impulse[n][2]);
     ledger().work_of_solids += solids.work[n];

@@ -20,18 +20,19 @@ class Compressible : public godunov::GasFlow {
  public:
   Compressible(const Grid& grid, const godunov::Options& options);
 
-  /// courant / max over cells of sum over axes of |u|/h, with the speed that the present pressure can add;
-  /// laminar: and 2 nu/h^2
+  /// courant / max over cells of sum over axes of |u|/h, with the speed that the present pressure, or as much
+  /// as acted in the last step, can add; laminar: and 2 nu/h^2
   double stable_dt(double courant) override;
   using GasFlow::advance;
   void advance(double dt, SolidMask& solids) override;
   std::vector<Field*> state() override;
-  std::vector<double*> state_numbers() override { return {&acoustic_.last_dt()}; }
+  std::vector<double*> state_numbers() override;
   int iterations() const { return acoustic_.iterations(); }  ///< of the last step's pressure equation
 
  private:
   template <class P>
   void step(double dt, SolidMask& solids);
+  void measure_growth();
   void still_solids(const SolidMask& solids, Real dt);
   void hold_solids(SolidMask& solids);
   /// At which velocity forces worked on the cells of solids: on faces that move with the solid; between the
@@ -45,6 +46,7 @@ class Compressible : public godunov::GasFlow {
   godunov::Block start_, middle_;
   Field inside_solid_;  ///< forcing weight of every cell in the last step, zero in the fluid
   bool had_solids_ = true;
+  double growth_ = 0.0;  ///< 1/s, rate of GrowthKernel after the last step; negative: not known yet
   double largest_nu_ = 0.0, explicit_dt_ = 1e300;  ///< m2/s, s: of the last stable_dt()
 };
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include "flow/cut_geometry.hpp"
 #include "flow/cut_ghosts.hpp"
@@ -49,7 +50,7 @@ Vec3 CutFlow::begin(const CutCells& cut, const std::array<ConstFieldView, 3>& u)
     add(i, j, k, -1.0);
     carried_(i, j, k) = carried;
     add(i, j, k, 1.0);
-    touched_.push_back({i, j, k});
+    if (carried != Real(1)) touched_.push_back({i, j, k});
   };
   for (std::size_t n = 0; n < cut.cells.size(); ++n) {
     const CutCell& c = cut.cells[n];
@@ -57,6 +58,10 @@ Vec3 CutFlow::begin(const CutCells& cut, const std::array<ConstFieldView, 3>& u)
   }
   for (const GhostCell& g : cut.ghosts)
     if (cut.index(g.i, g.j, g.k) < 0) touch(g.i, g.j, g.k, Real(0));
+  // As resume() finds them, so that the sums of a resumed run come out to the same bits.
+  std::sort(touched_.begin(), touched_.end(), [](const Cell& a, const Cell& b) {
+    return std::tie(a[2], a[1], a[0]) < std::tie(b[2], b[1], b[0]);
+  });
   solid_volume_ = 0;
   for (const Cell& c : touched_)
     solid_volume_ += (1.0 - double(carried_(c[0], c[1], c[2]))) * grid_.volume(c[0], c[1], c[2]);
@@ -69,10 +74,11 @@ Vec3 CutFlow::begin(const CutCells& cut, const std::array<ConstFieldView, 3>& u)
 
 void CutFlow::resume() {
   touched_.clear();
+  const auto part = carried();
   for (int k = 0; k < grid_.nz(); ++k)
     for (int j = 0; j < grid_.ny(); ++j)
       for (int i = 0; i < grid_.nx(); ++i)
-        if (carried_(i, j, k) != Real(1)) touched_.push_back({i, j, k});
+        if (part(i, j, k) != Real(1)) touched_.push_back({i, j, k});
 }
 
 CutFlow::Gradient CutFlow::gradient(const CutCells& cut, const CutCell& carrier, ConstFieldView p) const {

@@ -31,7 +31,8 @@ class CutFlow {
   ConstFieldView carried() const { return carried_.view(); }
   Field& carried_field() { return carried_; }
   double solid_volume() const { return solid_volume_; }  ///< m3 of the box without momentum
-  void resume();  ///< carried_field() has been filled again
+  /// To be called after the carried field has been filled from elsewhere.
+  void resume();
 
   /// Writes terms.out of cut cells, friction included, which is counted `weight` times (density, kg/m3) in
   /// cut.friction_impulse; of ghosts it says that nothing changes. Returns the momentum over density that the displaced
@@ -70,7 +71,7 @@ class CutFlow {
   Real nu_;
   Field carried_;
   double solid_volume_ = 0;
-  std::vector<std::array<int, 3>> touched_;           // cells whose carried_ is not 1
+  std::vector<std::array<int, 3>> touched_;           // cells whose carried_ is not 1, rows in turn
   std::vector<std::array<Real, 3>> gradient_, kept_;  // of cut.cells
   std::vector<std::array<Real, 3>> values_;           // scratch of extend
   std::vector<Real> scalars_;                         // scratch of extend_pressure

@@ -62,8 +62,14 @@ class Incompressible {
   void initialise(const std::function<Vec3(const Vec3&)>& velocity,
                   const std::function<double(const Vec3&)>& pressure, double time);
   /// The largest step for a Courant number (sum over directions of |u| dt / h, Eq. 6 of the paper) and for
-  /// the explicit viscous terms.
-  double stable_dt(double courant);
+  /// the explicit viscous terms; after a step of `last_dt`, also with what u gains if it accelerates as it
+  /// did in that one (dt (r + g dt) = courant), and at most `most` times as long. NaN where the flow holds
+  /// one.
+  double stable_dt(double courant, double last_dt = 0.0, double most = 2.0);
+  /// The same before anything has moved: what pressure, forces and boundaries will do is tried.
+  double first_step(double time, double courant, double longest);
+  /// The Courant number that a step without solids would reach; the flow stays as it is.
+  double try_step(double time, double dt);
   double courant(double dt) const;
   void advance(double time, double dt, SolidMask& solids);
 
@@ -84,7 +90,7 @@ class Incompressible {
   FlowLedger& ledger() { return ledger_; }
   /// False as soon as any velocity is not finite; `where` gets the first such cell.
   bool finite(Vec3* where = nullptr) const;
-  /// To be called after `state()` has been filled again: brings boundary states to `time`.
+  /// To be called after `state()` has been filled again: brings boundary states to `time`, and what is read off it.
   void resume(double time) {
     boundaries_.update(time);
     cut_flow_.resume();
@@ -110,7 +116,8 @@ class Incompressible {
   CutFlow cut_flow_;
   CutPressure cut_pressure_;
   std::unique_ptr<TwoEquation> turbulence_;
-  std::array<Field, 3> u_, u_old_, u_star_, q_, source_;
+  std::array<Field, 3> u_, u_star_, q_, source_;
+  std::array<Field, 3> u_old_;  // velocity at the beginning of the step, also after it (stable_dt)
   Field p_, phi_;
   IncrementSmoother smoother_;
   bool smoothing_ = false;

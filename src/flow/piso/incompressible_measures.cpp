@@ -1,7 +1,9 @@
 // What is read off an incompressible flow: the step it allows, its sums, whether it is finite.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
+#include <vector>
 
 #include "flow/piso/incompressible.hpp"
 #include "flow/piso/projection.hpp"
@@ -9,26 +11,53 @@
 namespace ejecta {
 namespace {
 
-/// Inverse time scales of one cell: convection sum |u| / h and viscosity 2 nu sum 1 / h2, 1/s.
+/// What one cell says about the next step: convection r = sum |u| / h and viscosity 2 nu sum 1 / h2, 1/s, and
+/// what the speed grows by, g = sum a / h, 1/s2. Ghosts and the inside of solids say nothing of their own:
+/// what they hold is not fluid.
 struct Rates {
-  std::array<ConstFieldView, 3> u;
-  ConstFieldView nut;
+  std::array<ConstFieldView, 3> u, before;  ///< now and at the beginning of the last step
+  ConstFieldView nut, carried;
   Metrics x, y, z;
   Real on_x, on_y, on_z, nu;
+  Real inv_last = 0;  ///< of the last step, 1/s
 
+  EJECTA_KERNEL Real fluid(int i, int j, int k) const { return Real(carried(i, j, k) > Real(0)); }
   EJECTA_KERNEL Real convection(int i, int j, int k) const {
-    return on_x * std::abs(u[0](i, j, k)) * x.inv_width[i] + on_y * std::abs(u[1](i, j, k)) * y.inv_width[j] +
-           on_z * std::abs(u[2](i, j, k)) * z.inv_width[k];
+    return fluid(i, j, k) * (on_x * std::abs(u[0](i, j, k)) * x.inv_width[i] +
+                             on_y * std::abs(u[1](i, j, k)) * y.inv_width[j] +
+                             on_z * std::abs(u[2](i, j, k)) * z.inv_width[k]);
   }
   EJECTA_KERNEL Real viscosity(int i, int j, int k, Real eddy) const {
     const Real hx = x.inv_width[i], hy = y.inv_width[j], hz = z.inv_width[k];
     return Real(2) * (nu + eddy) * (on_x * hx * hx + on_y * hy * hy + on_z * hz * hz);
   }
+  /// What the last step changed a velocity by, as far as the same again can raise |u| above what it is: a
+  /// step of at most twice the last one slows |u| down, or turns it round within |u|, when it changed by
+  /// less.
+  EJECTA_KERNEL Real growth(ConstFieldView now, ConstFieldView then, int i, int j, int k) const {
+    const Real v = now(i, j, k), change = v - then(i, j, k);
+    return v * change >= 0 || std::abs(change) > std::abs(v) ? std::abs(change) : Real(0);
+  }
+  EJECTA_KERNEL Real acceleration(int i, int j, int k) const {
+    return fluid(i, j, k) * inv_last *
+           (on_x * growth(u[0], before[0], i, j, k) * x.inv_width[i] +
+            on_y * growth(u[1], before[1], i, j, k) * y.inv_width[j] +
+            on_z * growth(u[2], before[2], i, j, k) * z.inv_width[k]);
+  }
 };
 
-Rates rates(const Grid& grid, const std::array<ConstFieldView, 3>& u, ConstFieldView nut, double nu) {
+/// Inverse of the step that solves dt (rate + g dt) = 1.
+EJECTA_KERNEL Real rate_with(Real rate, Real g) {
+  return Real(0.5) * (rate + std::sqrt(rate * rate + Real(4) * g));
+}
+
+Rates rates(const Grid& grid, const std::array<ConstFieldView, 3>& u,
+            const std::array<ConstFieldView, 3>& before, ConstFieldView nut, ConstFieldView carried,
+            double nu) {
   return {u,
+          before,
           nut,
+          carried,
           grid.metrics(0),
           grid.metrics(1),
           grid.metrics(2),
@@ -40,31 +69,69 @@ Rates rates(const Grid& grid, const std::array<ConstFieldView, 3>& u, ConstField
 
 }  // namespace
 
-double Incompressible::stable_dt(double courant) {
-  const Rates r = rates(grid_, std::as_const(*this).views(u_),
-                        turbulence_ ? turbulence_->eddy_viscosity() : ConstFieldView{}, setup_.viscosity);
+double Incompressible::stable_dt(double courant, double last_dt, double most) {
+  Rates r = rates(grid_, std::as_const(*this).views(u_), std::as_const(*this).views(u_old_),
+                  turbulence_ ? turbulence_->eddy_viscosity() : ConstFieldView{}, cut_flow_.carried(),
+                  setup_.viscosity);
+  r.inv_last = last_dt > 0.0 ? static_cast<Real>(1.0 / last_dt) : Real(0);
   // Heun's method is stable to -2 on the negative real axis, where upwinding reaches -2 sum |u| dt/h and
   // viscosity -4 nu sum dt/h2; k and epsilon, explicit Euler, stay positive under the same sum.
   const Real by_courant = static_cast<Real>(1.0 / courant);
-  if (!turbulence_)
-    return 1.0 / std::max(1e-30, double(reduce_max(grid_.range(), [=](int i, int j, int k) {
-                            return by_courant * r.convection(i, j, k) + r.viscosity(i, j, k, Real(0));
-                          })));
-  // With eddies: beyond the explicit limit increments are smoothed, up to the convective limit.
-  const auto [both, eddy, convection] = reduce_max<3>(grid_.range(), [=](int i, int j, int k, Real* rate) {
-    rate[1] = r.nut(i, j, k);
-    rate[2] = r.convection(i, j, k);
-    rate[0] = by_courant * rate[2] + r.viscosity(i, j, k, rate[1]);
-  });
-  explicit_dt_ = 1.0 / std::max(1e-30, double(both));
-  largest_viscosity_ = setup_.viscosity + double(eddy);
+  // A NaN stays one, so that the owner of the run hears of it at once.
+  const auto step = [](double rate) { return rate < 1e-30 ? 1e30 : 1.0 / rate; };
+  const auto [both, with_growth, eddy, convection] =
+      reduce_max<4>(grid_.range(), [=, turbulent = turbulence_ != nullptr](int i, int j, int k, Real* rate) {
+        rate[2] = turbulent ? r.nut(i, j, k) : Real(0);
+        rate[3] = r.convection(i, j, k);
+        rate[0] = by_courant * rate[3] + r.viscosity(i, j, k, rate[2]);
+        // With eddies: beyond the explicit limit increments are smoothed, up to the convective limit.
+        rate[1] = rate_with(turbulent ? by_courant * rate[3] : rate[0], by_courant * r.acceleration(i, j, k));
+      });
   convection_ = double(convection);
-  return courant / std::max(1e-30, convection_);
+  if (turbulence_) {
+    explicit_dt_ = step(double(both));
+    largest_viscosity_ = setup_.viscosity + double(eddy);
+  }
+  return std::min(step(double(with_growth)), last_dt > 0.0 ? most * last_dt : 1e30);
+}
+
+/// Tries a step without solids and takes it back: a resume needs no more than state(). Returns the Courant
+/// number it reached. In u_old_ it leaves what stable_dt reads as the velocity before a step of twice its
+/// acceleration: twice, because bodies, of which it knows nothing, hasten what goes around them.
+double Incompressible::try_step(double time, double dt) {
+  std::vector<Field> kept;
+  for (const Field* f : state()) kept.push_back(*f);
+  const FlowLedger ledger = ledger_;
+  const FlowTimes times = times_;
+  SolidMask none;
+  advance(time, dt, none);
+  const double reached = courant(dt);
+  for (std::size_t c = 0; c < 3; ++c) std::swap(u_old_[c], u_[c]);
+  const std::vector<Field*> all = state();
+  for (std::size_t n = 0; n < all.size(); ++n) *all[n] = kept[n];
+  for (std::size_t c = 0; c < 3; ++c)
+    for (std::size_t n = 0; n < u_[c].size(); ++n)
+      u_old_[c].data()[n] = Real(3) * u_[c].data()[n] - Real(2) * u_old_[c].data()[n];
+  ledger_ = ledger;
+  times_ = times;
+  convection_ = -1.0;
+  resume(time);
+  return reached;
+}
+
+double Incompressible::first_step(double time, double courant, double longest) {
+  double dt = std::min({stable_dt(courant), longest, 1.0});
+  // The beginning of the motion, before it has crossed a cell, is what counts. NaN is too far as well.
+  while (!(try_step(time, dt) <= 1.5 * courant)) {
+    dt *= 0.01;
+    if (!(dt > 1e-30)) return std::numeric_limits<double>::quiet_NaN();
+  }
+  return stable_dt(courant, dt, 1e30);
 }
 
 double Incompressible::courant(double dt) const {
   if (convection_ >= 0.0) return dt * convection_;
-  const Rates r = rates(grid_, views(u_), {}, 0.0);
+  const Rates r = rates(grid_, views(u_), views(u_old_), {}, cut_flow_.carried(), 0.0);
   return dt * double(reduce_max(grid_.range(), [=](int i, int j, int k) { return r.convection(i, j, k); }));
 }
 
@@ -79,9 +146,10 @@ Vec3 Incompressible::momentum() const {
   const Metrics m[3] = {grid_.metrics(0), grid_.metrics(1), grid_.metrics(2)};
   Vec3 sum;
   for (int c = 0; c < 3; ++c)
-    sum[c] = setup_.density * reduce_sum(grid_.range(), [=, u = u_[c].view(), part = cut_flow_.carried()](int i, int j, int k) {
-               return double(part(i, j, k)) * double(u(i, j, k)) * double(m[0].volume[i]) * double(m[1].volume[j]) *
-                      double(m[2].volume[k]);
+    sum[c] = setup_.density * reduce_sum(grid_.range(), [=, u = u_[c].view(), part = cut_flow_.carried()](
+                                                            int i, int j, int k) {
+               return double(part(i, j, k)) * double(u(i, j, k)) * double(m[0].volume[i]) *
+                      double(m[1].volume[j]) * double(m[2].volume[k]);
              });
   return sum;
 }
@@ -92,8 +160,8 @@ double Incompressible::kinetic_energy() const {
   const ConstFieldView part = cut_flow_.carried();
   return 0.5 * setup_.density * reduce_sum(grid_.range(), [=](int i, int j, int k) {
            const double x = u[0](i, j, k), y = u[1](i, j, k), z = u[2](i, j, k);
-           return double(part(i, j, k)) * (x * x + y * y + z * z) * double(m[0].volume[i]) * double(m[1].volume[j]) *
-                  double(m[2].volume[k]);
+           return double(part(i, j, k)) * (x * x + y * y + z * z) * double(m[0].volume[i]) *
+                  double(m[1].volume[j]) * double(m[2].volume[k]);
          });
 }
 

@@ -128,7 +128,7 @@ double largest_divergence(const Grid& grid, const std::array<ConstFieldView, 3>&
   return reduce_max(grid.range(), [=](int i, int j, int k) {
     const Real volume = m[0].volume[i] * m[1].volume[j] * m[2].volume[k];
     const Real width = std::min({m[0].width[i], m[1].width[j], m[2].width[k]});
-    return std::abs(out(i, j, k)) * width / (volume * fastest);
+    return std::abs(out(i, j, k)) * width / volume / fastest;  // at rest their product would be 0
   });
 }
 
