@@ -227,7 +227,10 @@ void Incompressible::advance(double time, double dt, SolidMask& solids) {
     fmt::print(stderr, "t {:.5g} dt {:.4g} it {} cells {} carriers {} orphans {} ghosts {} walls {} worst {:.4g} at {} ({} {} {}) fluid {:.3f} d {:.4g} carried {:.3f} members {} u {:.4g} {:.4g} {:.4g} p {:.4g}\n", time, dt,
       cut_pressure_.iterations(), cut.cells.size(), nc, orphan, cut.ghosts.size(), cut.walls.size(), worst, at, c.i, c.j, c.k, c.fluid, c.distance, c.carried, c.members, u_[0](c.i,c.j,c.k), u_[1](c.i,c.j,c.k), u_[2](c.i,c.j,c.k), p_(c.i,c.j,c.k));
   }
-  extend_to_ghosts(cut, p_.view(), ghost_values_, [&cut](const GhostCell& g) { return cut.index(g.i, g.j, g.k) < 0; });
+  extend_to_ghosts(cut, p_.view(), ghost_values_, [&cut](const GhostCell& g) {
+    const int index = cut.index(g.i, g.j, g.k);
+    return index < 0 || cut.cells[static_cast<std::size_t>(index - 1)].carrier < 0;
+  });
   for (std::size_t w = 0; w < cut.walls.size(); ++w)
     ledger_.impulse_on_solids += cut.pressure_impulse[w] + cut.friction_impulse[w];
 
