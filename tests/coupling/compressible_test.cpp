@@ -30,7 +30,7 @@ CouplingSetup coupling_setup() {
 }
 
 Body body_of(Shape shape, double mass, const Vec3& position, const Vec3& velocity) {
-  Body b{.name = "body", .shape = std::move(shape)};
+  Body b{.name = "body", .shape = std::move(shape), .enters_at = {}};
   b.mass = mass;
   b.inertia = Vec3::Constant(mass);
   b.position = position;

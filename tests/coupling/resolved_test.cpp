@@ -8,7 +8,7 @@ namespace ejecta {
 namespace {
 
 Body body_of(Shape shape, const Vec3& position) {
-  Body b{.name = "body", .shape = std::move(shape)};
+  Body b{.name = "body", .shape = std::move(shape), .enters_at = {}};
   b.mass = 1.0;
   b.position = position;
   return b;
