@@ -64,7 +64,8 @@ CouplingSetup CoupledModel::coupling_setup() const {
   if (s.bodies == BodiesAs::cut_cells) s.body_force = case_.flow.body_force;
   for (std::size_t d = 0; d < 3; ++d)
     s.periodic[d] = grid_.active(int(d)) && case_.boundary[2 * d].type == BoundaryType::periodic;
-  for (const Body& b : particles_.bodies()) s.roughness.push_back(particles_.materials().spec(b.material).roughness);
+  for (const Body& b : particles_.bodies())
+    s.roughness.push_back(particles_.materials().spec(b.material).roughness);
   return s;
 }
 
@@ -257,7 +258,8 @@ Vec3 CoupledModel::mean_force(std::size_t b) const {
 }
 
 Vec3 CoupledModel::friction(std::size_t b) const {
-  return air_ && coupling_ && b < coupling_->parts().size() ? coupling_->parts()[b].friction : Vec3(Vec3::Zero());
+  return air_ && coupling_ && b < coupling_->parts().size() ? coupling_->parts()[b].friction
+                                                            : Vec3(Vec3::Zero());
 }
 
 Vec3 CoupledModel::mean_friction(std::size_t b) const {

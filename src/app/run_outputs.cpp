@@ -145,9 +145,13 @@ void RunOutputs::write_histories(double time) {
   const auto bodies = model_.particles().bodies();
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
     std::array<double, 21> row;
-    const Vec3 columns[] = {bodies[b].position,         bodies[b].velocity,
-                            bodies[b].angular_velocity, model_.loads()[b].force,
-                            model_.friction(b),             model_.loads()[b].torque,   model_.particles().contact_force(int(b))};
+    const Vec3 columns[] = {bodies[b].position,
+                            bodies[b].velocity,
+                            bodies[b].angular_velocity,
+                            model_.loads()[b].force,
+                            model_.friction(b),
+                            model_.loads()[b].torque,
+                            model_.particles().contact_force(int(b))};
     for (std::size_t n = 0; n < 21; ++n) row[n] = columns[n / 3][static_cast<int>(n % 3)];
     bodies_[b]->add(time, row);
   }

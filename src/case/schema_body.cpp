@@ -19,7 +19,8 @@ std::vector<Key> keys(MaterialSpec& s) {
       {"friction", &s.friction, none, not_negative, "Coefficient of sliding friction", "paper, Table 2"},
       {"rolling_friction", &s.rolling_friction, none, not_negative, "Coefficient of rolling friction", ""},
       {"roughness", &s.roughness, length, not_negative,
-       "Height of the sand grains that make a surface as rough as this one, for the air's friction on it in turbulent "
+       "Height of the sand grains that make a surface as rough as this one, for the air's friction on it in "
+       "turbulent "
        "incompressible flow; 0 is smooth",
        "Colebrook 1939"}};
 }

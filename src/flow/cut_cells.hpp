@@ -14,14 +14,14 @@ namespace ejecta {
 /// A cell that a surface cuts, or that carries the momentum of such a cell.
 struct CutCell {
   int i = 0, j = 0, k = 0;
-  Real fluid = 1;                    ///< fluid part of its own volume, 0..1
-  Real distance = 0;                 ///< of its centre from the nearest surface, m; > 0 in the fluid
-  std::array<Real, 3> normal{};      ///< of that surface, into the fluid
-  int carrier = -1;                  ///< index of the cell that carries its momentum: itself, or of a small cell a
-                                     ///< neighbour; -1: none does (fluid locked in)
-  Real carried = 0;                  ///< volume of fluid whose momentum it carries over that of the cell
-  int first_wall = 0, walls = 0;     ///< range of CutCells::walls
-  int first_member = 0, members = 0; ///< range of CutCells::members: the cells it carries, itself first
+  Real fluid = 1;                ///< fluid part of its own volume, 0..1
+  Real distance = 0;             ///< of its centre from the nearest surface, m; > 0 in the fluid
+  std::array<Real, 3> normal{};  ///< of that surface, into the fluid
+  int carrier = -1;  ///< index of the cell that carries its momentum: itself, or of a small cell a
+                     ///< neighbour; -1: none does (fluid locked in)
+  Real carried = 0;  ///< volume of fluid whose momentum it carries over that of the cell
+  int first_wall = 0, walls = 0;      ///< range of CutCells::walls
+  int first_member = 0, members = 0;  ///< range of CutCells::members: the cells it carries, itself first
 };
 
 /// The part of a body's surface within a cell.
@@ -37,7 +37,7 @@ struct CutWall {
 /// A face that solids close in part or as a whole: the lower d-face of cell (i, j, k).
 struct CutFace {
   int d = 0, i = 0, j = 0, k = 0;
-  Real closed = 0;  ///< part of its area, 0..1
+  Real closed = 0;    ///< part of its area, 0..1
   Real velocity = 0;  ///< of the solid along d, m/s
 };
 
@@ -45,11 +45,11 @@ struct CutFace {
 /// see, extended from cells in the fluid along the normal.
 struct GhostCell {
   int i = 0, j = 0, k = 0;
-  int donors = 0;  ///< 0: deep inside, it moves with the solid
+  int donors = 0;                         ///< 0: deep inside, it moves with the solid
   std::array<std::ptrdiff_t, 8> donor{};  ///< from this cell, in entries of a field
   std::array<Real, 8> weight{};
-  Real ratio = 0;  ///< distance of this cell over that of its donors: < 0 inside
-  Real image = 0;  ///< distance of its donors from the surface, m
+  Real ratio = 0;                         ///< distance of this cell over that of its donors: < 0 inside
+  Real image = 0;                         ///< distance of its donors from the surface, m
   std::array<Real, 3> normal{}, solid{};  ///< of the surface, into the fluid; m/s
 };
 

@@ -17,8 +17,8 @@ inline Real face_area_of(const Grid& grid, int d, const std::array<int, 3>& at) 
                   : face_area<2>(m, at[0], at[1], at[2]);
 }
 
-/// visit(member, d, face, neighbour, sign, open part, whole area) for the open faces of a carrier and of the cells it
-/// carries; sign: +1 where the face is the member's upper one.
+/// visit(member, d, face, neighbour, sign, open part, whole area) for the open faces of a carrier and of the
+/// cells it carries; sign: +1 where the face is the member's upper one.
 template <class Visit>
 void for_each_open_face(const Grid& grid, const CutCells& cut, const CutCell& carrier, const Visit& visit) {
   for (int n = carrier.first_member; n < carrier.first_member + carrier.members; ++n) {
@@ -30,7 +30,8 @@ void for_each_open_face(const Grid& grid, const CutCells& cut, const CutCell& ca
       face[static_cast<std::size_t>(d)] += up;
       beyond[static_cast<std::size_t>(d)] += up ? 1 : -1;
       const Real open = Real(1) - cut.closed[static_cast<std::size_t>(d)](face[0], face[1], face[2]);
-      if (open > Real(0)) visit(c, d, face, beyond, up ? Real(1) : Real(-1), open, face_area_of(grid, d, face));
+      if (open > Real(0))
+        visit(c, d, face, beyond, up ? Real(1) : Real(-1), open, face_area_of(grid, d, face));
     }
   }
 }
@@ -40,7 +41,8 @@ template <class Visit>
 void for_each_wall(const CutCells& cut, const CutCell& carrier, const Visit& visit) {
   for (int n = carrier.first_member; n < carrier.first_member + carrier.members; ++n) {
     const CutCell& c = cut.cells[static_cast<std::size_t>(cut.members[static_cast<std::size_t>(n)])];
-    for (int w = c.first_wall; w < c.first_wall + c.walls; ++w) visit(cut.walls[static_cast<std::size_t>(w)], w);
+    for (int w = c.first_wall; w < c.first_wall + c.walls; ++w)
+      visit(cut.walls[static_cast<std::size_t>(w)], w);
   }
 }
 
@@ -58,8 +60,8 @@ inline Real width_along_normal(const Grid& grid, const CutCell& c) {
   return width > Real(0) ? width : grid.metrics(0).width[c.i];
 }
 
-/// Distance from the wall at which the velocity of a carrier stands in the law of the wall, m: being that of its fluid
-/// as a whole, it stands for the middle between the wall and the far side.
+/// Distance from the wall at which the velocity of a carrier stands in the law of the wall, m: being that of
+/// its fluid as a whole, it stands for the middle between the wall and the far side.
 inline Real wall_distance(const Grid& grid, const CutCell& carrier) {
   return Real(0.5) * (std::max(carrier.distance, Real(0)) + Real(0.5) * width_along_normal(grid, carrier));
 }

@@ -59,10 +59,11 @@ Vec3 area_of(const CutWall& w) { return {w.area[0], w.area[1], w.area[2]}; }
 
 /// Two cubes face to face, a third on an edge of theirs, a ball that touches two of them; moving.
 std::vector<Body> heap() {
-  std::vector<Body> bodies{body_of(make_box({0.5, 0.5, 0.5}), {-0.237, 0.013, -0.211}),
-                           body_of(make_box({0.5, 0.5, 0.5}), {0.263, 0.041, -0.195}),
-                           body_of(make_box({0.4, 0.4, 0.4}), {0.02, 0.03, 0.317}, turned(std::numbers::pi / 4, {0, 1, 0})),
-                           body_of(make_sphere(0.44), {0.013, -0.455, -0.203})};
+  std::vector<Body> bodies{
+      body_of(make_box({0.5, 0.5, 0.5}), {-0.237, 0.013, -0.211}),
+      body_of(make_box({0.5, 0.5, 0.5}), {0.263, 0.041, -0.195}),
+      body_of(make_box({0.4, 0.4, 0.4}), {0.02, 0.03, 0.317}, turned(std::numbers::pi / 4, {0, 1, 0})),
+      body_of(make_sphere(0.44), {0.013, -0.455, -0.203})};
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     bodies[b].velocity = Vec3(0.1, -0.2, 0.05) * double(b + 1);
     bodies[b].angular_velocity = Vec3(1, 2, -1) * double(b);
@@ -84,14 +85,17 @@ TEST(CutMap, TakesTheVolumeOfASphereAwayAtSecondOrder) {
 
 TEST(CutMap, TakesTheVolumeOfABoxAway) {
   const Grid grid = uniform(40);  // 16 x 12 x 20 cells, whose edges are cut off by a fraction of a cell
-  for (const Vec3& at : {Vec3(0, 0, 0), Vec3(0.013, 0.021, -0.017), Vec3(0.025, -0.0249, 0.001), Vec3(0.04, 0.01, 0.03)}) {
+  for (const Vec3& at :
+       {Vec3(0, 0, 0), Vec3(0.013, 0.021, -0.017), Vec3(0.025, -0.0249, 0.001), Vec3(0.04, 0.01, 0.03)}) {
     const std::vector<Body> box{body_of(make_box({0.8, 0.6, 1.0}), at)};
     EXPECT_NEAR(volume_removed(grid, mapped(grid, box)) / (0.8 * 0.6), 1.0, 0.01) << at.transpose();
   }
   for (const Vec3& axis : {Vec3(0, 0, 1), Vec3(1, 2, 3), Vec3(1, 1, 0)})
     for (const double angle : {0.2, 0.7}) {
-      const std::vector<Body> box{body_of(make_box({0.8, 0.6, 1.0}), {0.013, 0.021, -0.017}, turned(angle, axis))};
-      EXPECT_NEAR(volume_removed(grid, mapped(grid, box)) / (0.8 * 0.6), 1.0, 0.01) << angle << " " << axis.transpose();
+      const std::vector<Body> box{
+          body_of(make_box({0.8, 0.6, 1.0}), {0.013, 0.021, -0.017}, turned(angle, axis))};
+      EXPECT_NEAR(volume_removed(grid, mapped(grid, box)) / (0.8 * 0.6), 1.0, 0.01)
+          << angle << " " << axis.transpose();
     }
 }
 
@@ -112,10 +116,12 @@ TEST(CutMap, CellsThatAPlaneCutsAreExact) {
       bool plane = true;  // no edge of the box is near
       for (int e = 0; e < 3; ++e) {
         const std::size_t n = static_cast<std::size_t>(index[e]);
-        const double low = grid.axis(e).face[n], high = grid.axis(e).face[n + 1], from = at[e] - half[e], to = at[e] + half[e];
+        const double low = grid.axis(e).face[n], high = grid.axis(e).face[n + 1], from = at[e] - half[e],
+                     to = at[e] + half[e];
         solid *= overlap(low, high, from, to);
         const double beyond = 0.5 * (1.0 - std::abs(Vec3(c.normal[0], c.normal[1], c.normal[2])[e])) * 0.2;
-        plane = plane && (std::abs(c.normal[static_cast<std::size_t>(e)]) > Real(0.999) || (low > from + beyond && high < to - beyond));
+        plane = plane && (std::abs(c.normal[static_cast<std::size_t>(e)]) > Real(0.999) ||
+                          (low > from + beyond && high < to - beyond));
       }
       if (!plane || c.walls == 0) continue;
       ++seen;
@@ -132,8 +138,8 @@ TEST(CutMap, TakesTheVolumeOfAClusterAwayOnce) {
   EXPECT_NEAR(volume / cluster.mass_properties().volume, 1.0, 0.01);
 }
 
-/// Largest sum over the closed surface of a cell's fluid, parts of its faces. Parts of a face below 1e-5 count as
-/// nothing.
+/// Largest sum over the closed surface of a cell's fluid, parts of its faces. Parts of a face below 1e-5
+/// count as nothing.
 double largest_gap(const Grid& grid, const CutCells& cut) {
   double worst = 0.0;
   for (const CutCell& c : cut.cells) {
@@ -141,13 +147,16 @@ double largest_gap(const Grid& grid, const CutCells& cut) {
     const int at[3] = {c.i, c.j, c.k};
     double largest = 0.0;
     for (std::size_t d = 0; d < 3; ++d) {
-      const double area = grid.volume(c.i, c.j, c.k) / grid.axis(int(d)).width[static_cast<std::size_t>(at[d])];
+      const double area =
+          grid.volume(c.i, c.j, c.k) / grid.axis(int(d)).width[static_cast<std::size_t>(at[d])];
       int up[3] = {c.i, c.j, c.k};
       ++up[d];
-      sum[int(d)] += area * (double(cut.closed[d](c.i, c.j, c.k)) - double(cut.closed[d](up[0], up[1], up[2])));
+      sum[int(d)] +=
+          area * (double(cut.closed[d](c.i, c.j, c.k)) - double(cut.closed[d](up[0], up[1], up[2])));
       largest = std::max(largest, area);
     }
-    for (int w = c.first_wall; w < c.first_wall + c.walls; ++w) sum += area_of(cut.walls[static_cast<std::size_t>(w)]);
+    for (int w = c.first_wall; w < c.first_wall + c.walls; ++w)
+      sum += area_of(cut.walls[static_cast<std::size_t>(w)]);
     worst = std::max(worst, sum.norm() / largest);
   }
   return worst;
@@ -157,7 +166,8 @@ TEST(CutMap, TheSurfaceOfTheFluidInEveryCellIsClosed) {
   for (const Grid& grid : {uniform(31), graded(30)}) {
     double gap = largest_gap(grid, mapped(grid, {body_of(make_sphere(0.9), {0.11, -0.07, 0.03})}));
     EXPECT_LT(gap, 3e-5);
-    gap = largest_gap(grid, mapped(grid, {body_of(make_box({0.8, 0.6, 1.0}), {0.01, 0, 0}, turned(0.4, {1, 2, 3}))}));
+    gap = largest_gap(
+        grid, mapped(grid, {body_of(make_box({0.8, 0.6, 1.0}), {0.01, 0, 0}, turned(0.4, {1, 2, 3}))}));
     EXPECT_LT(gap, 3e-5);
     gap = largest_gap(grid, mapped(grid, heap()));
     EXPECT_LT(gap, 3e-5);
@@ -182,7 +192,8 @@ TEST(CutMap, TheWallsOfABodyAreItsSurface) {
   check(graded(40), body_of(make_sphere(0.9), {0.11, -0.07, 0.03}), std::numbers::pi * 0.81, 0.02);
   // The edges of a box are cut off: a quarter of a cell each.
   check(uniform(60), body_of(make_box({1, 0.8, 0.9}), {0.011, 0.007, 0.003}), 4.84, 0.03);
-  check(uniform(60), body_of(make_box({1, 0.8, 0.9}), {0.011, 0.007, 0.003}, turned(0.5, {1, 2, 3})), 4.84, 0.03);
+  check(uniform(60), body_of(make_box({1, 0.8, 0.9}), {0.011, 0.007, 0.003}, turned(0.5, {1, 2, 3})), 4.84,
+        0.03);
 }
 
 TEST(CutMap, FacesThatAPlaneCutsAreExact) {
@@ -200,7 +211,8 @@ TEST(CutMap, FacesThatAPlaneCutsAreExact) {
           for (int e = 0; e < 3; ++e) {
             const std::size_t n = static_cast<std::size_t>(index[e]);
             const Axis& axis = grid.axis(e);
-            const double low = axis.face[n], high = axis.face[n + 1], from = at[e] - half[e], to = at[e] + half[e];
+            const double low = axis.face[n], high = axis.face[n + 1], from = at[e] - half[e],
+                         to = at[e] + half[e];
             if (e == d) {
               closed *= low > from && low < to;
               continue;
@@ -210,7 +222,8 @@ TEST(CutMap, FacesThatAPlaneCutsAreExact) {
           }
           if (planes > 1) continue;  // the corner of a box is no plane
           seen += planes && closed > 0.0;
-          ASSERT_NEAR(cut.closed[static_cast<std::size_t>(d)](i, j, k), closed, 1e-3) << d << i << " " << j << " " << k;
+          ASSERT_NEAR(cut.closed[static_cast<std::size_t>(d)](i, j, k), closed, 1e-3)
+              << d << i << " " << j << " " << k;
         }
   EXPECT_GT(seen, 500);
 }
@@ -297,7 +310,8 @@ TEST(CutMap, SmallCellsAreCarriedByCellsThatKeepTheirOwnMomentum) {
       const std::size_t member = static_cast<std::size_t>(cut.members[static_cast<std::size_t>(m)]);
       ++seen[member];
       EXPECT_EQ(cut.cells[member].carrier, static_cast<int>(n));
-      own += double(cut.cells[member].fluid) * grid.volume(cut.cells[member].i, cut.cells[member].j, cut.cells[member].k);
+      own += double(cut.cells[member].fluid) *
+             grid.volume(cut.cells[member].i, cut.cells[member].j, cut.cells[member].k);
     }
     EXPECT_NEAR(double(c.carried) * volume, own, 1e-5 * volume);
   }
@@ -308,8 +322,10 @@ TEST(CutMap, SmallCellsAreCarriedByCellsThatKeepTheirOwnMomentum) {
 
 // What passes between a cell that keeps momentum and one whose momentum nobody keeps would be lost.
 TEST(CutMap, FluidThatNobodyCarriesIsLockedIn) {
-  for (const std::vector<Body>& bodies : {heap(), {body_of(make_sphere(0.5), {0.013, 0.021, -0.017})},
-                                          {body_of(make_box({0.7, 0.6, 0.5}), {0.01, 0.02, 0.03}, turned(0.4, {1, 2, 3}))}}) {
+  for (const std::vector<Body>& bodies :
+       {heap(),
+        {body_of(make_sphere(0.5), {0.013, 0.021, -0.017})},
+        {body_of(make_box({0.7, 0.6, 0.5}), {0.01, 0.02, 0.03}, turned(0.4, {1, 2, 3}))}}) {
     const Grid grid = uniform(26);
     const CutCells cut = mapped(grid, bodies);
     const auto nobodys = [&](int i, int j, int k) {
@@ -392,7 +408,8 @@ TEST(CutMap, ABodyAcrossTheCornerOfAPeriodicBoxIsTheSameAsInTheMiddle) {
   ball.angular_velocity = {1, -4, 2};
   Body corner = ball;
   corner.position += shift;
-  const CutCells middle = mapped(grid, {ball}, {true, true, true}), across = mapped(grid, {corner}, {true, true, true});
+  const CutCells middle = mapped(grid, {ball}, {true, true, true}),
+                 across = mapped(grid, {corner}, {true, true, true});
   int seen = 0;
   for (std::size_t d = 0; d < 3; ++d)
     for (int k = 0; k < n; ++k)
@@ -413,7 +430,8 @@ TEST(CutMap, ABodyAcrossTheCornerOfAPeriodicBoxIsTheSameAsInTheMiddle) {
   Vec3 moment[2] = {Vec3::Zero(), Vec3::Zero()};
   for (const CutWall& w : middle.walls) moment[0] += area_of(w).cwiseProduct(w.point - ball.position);
   for (const CutWall& w : across.walls) moment[1] += area_of(w).cwiseProduct(w.point - corner.position);
-  EXPECT_LT((moment[0] - moment[1]).norm(), 1e-3 * moment[0].norm()) << "walls of images act where the body is";
+  EXPECT_LT((moment[0] - moment[1]).norm(), 1e-3 * moment[0].norm())
+      << "walls of images act where the body is";
 }
 
 TEST(CutMap, GivesTheSameListsForAnyNumberOfThreads) {
@@ -434,8 +452,10 @@ TEST(CutMap, GivesTheSameListsForAnyNumberOfThreads) {
     EXPECT_EQ(a.members, b.members);
     for (std::size_t n = 0; n < a.cells.size(); ++n) {
       const CutCell &c = a.cells[n], &d = b.cells[n];
-      ASSERT_EQ(std::tie(c.i, c.j, c.k, c.fluid, c.distance, c.normal, c.carrier, c.carried, c.first_wall, c.walls),
-                std::tie(d.i, d.j, d.k, d.fluid, d.distance, d.normal, d.carrier, d.carried, d.first_wall, d.walls));
+      ASSERT_EQ(
+          std::tie(c.i, c.j, c.k, c.fluid, c.distance, c.normal, c.carrier, c.carried, c.first_wall, c.walls),
+          std::tie(d.i, d.j, d.k, d.fluid, d.distance, d.normal, d.carrier, d.carried, d.first_wall,
+                   d.walls));
     }
     for (std::size_t n = 0; n < a.walls.size(); ++n) {
       ASSERT_EQ(std::tie(a.walls[n].cell, a.walls[n].body, a.walls[n].area, a.walls[n].velocity),
@@ -444,7 +464,8 @@ TEST(CutMap, GivesTheSameListsForAnyNumberOfThreads) {
     }
     for (std::size_t n = 0; n < a.faces.size(); ++n) {
       const CutFace &c = a.faces[n], &d = b.faces[n];
-      ASSERT_EQ(std::tie(c.d, c.i, c.j, c.k, c.closed, c.velocity), std::tie(d.d, d.i, d.j, d.k, d.closed, d.velocity));
+      ASSERT_EQ(std::tie(c.d, c.i, c.j, c.k, c.closed, c.velocity),
+                std::tie(d.d, d.i, d.j, d.k, d.closed, d.velocity));
     }
     for (std::size_t n = 0; n < a.ghosts.size(); ++n) {
       const GhostCell &c = a.ghosts[n], &d = b.ghosts[n];

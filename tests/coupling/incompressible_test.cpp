@@ -75,7 +75,8 @@ struct Bodies {
     for (Body& b : bodies) {
       b.position += dt * b.velocity;
       const double turn = dt * b.angular_velocity.norm();
-      if (turn > 0.0) b.orientation = Quat(Eigen::AngleAxisd(turn, b.angular_velocity.normalized())) * b.orientation;
+      if (turn > 0.0)
+        b.orientation = Quat(Eigen::AngleAxisd(turn, b.angular_velocity.normalized())) * b.orientation;
       for (int d = 0; d < 3; ++d)  // into a periodic box
         if (flow.boundaries().kind(2 * d) == BoundaryKind::periodic) {
           const double length = grid.axis(d).length();
@@ -86,7 +87,8 @@ struct Bodies {
   /// What the ledger cannot explain, N s.
   double lost(const Vec3& start) const {
     const FlowLedger& l = flow.ledger();
-    return (flow.momentum() - start - l.momentum_through_boundaries + l.impulse_on_solids - l.displaced).norm();
+    return (flow.momentum() - start - l.momentum_through_boundaries + l.impulse_on_solids - l.displaced)
+        .norm();
   }
 };
 
@@ -105,12 +107,13 @@ TEST(BodiesInLiquid, ABodyThatMovesWithTheStreamLeavesItAlone) {
     for (const bool turbulent : {false, true}) {
       std::array<Boundary, 6> faces = all(periodic ? BoundaryKind::periodic : BoundaryKind::inflow);
       if (!periodic) {
-        for (Boundary& b : faces) b.state = [u](const Vec3&, double) {
-          BoundaryState s;
-          for (int d = 0; d < 3; ++d) s.velocity[std::size_t(d)] = static_cast<Real>(u[d]);
-          s.k = Real(1e-2), s.second = Real(0.1);
-          return s;
-        };
+        for (Boundary& b : faces)
+          b.state = [u](const Vec3&, double) {
+            BoundaryState s;
+            for (int d = 0; d < 3; ++d) s.velocity[std::size_t(d)] = static_cast<Real>(u[d]);
+            s.k = Real(1e-2), s.second = Real(0.1);
+            return s;
+          };
         faces[1].kind = BoundaryKind::open;
       }
       IncompressibleSetup setup;
@@ -156,7 +159,8 @@ Shape rock(unsigned seed, double size) {
   std::vector<Vec3> points;
   while (points.size() < 14) {
     const Vec3 x(part(random), part(random), part(random));
-    if (x.norm() > 0.3 && x.norm() < 1.0) points.push_back(0.5 * size * (0.8 + 0.2 * part(random)) * x.normalized());
+    if (x.norm() > 0.3 && x.norm() < 1.0)
+      points.push_back(0.5 * size * (0.8 + 0.2 * part(random)) * x.normalized());
   }
   return make_polyhedron(points);
 }
@@ -164,11 +168,13 @@ Shape rock(unsigned seed, double size) {
 /// Bodies in contact, all of them moving, in millimetres of a jet's box.
 std::vector<Body> two_cubes() {
   const Shape cube = make_box({6e-3, 6e-3, 6e-3});
-  return {body_of(cube, {-3.05e-3, 0.3e-3, 14e-3}, {4, 1, 8}), body_of(cube, {2.95e-3, -0.2e-3, 14.4e-3}, {4, 1, 8})};
+  return {body_of(cube, {-3.05e-3, 0.3e-3, 14e-3}, {4, 1, 8}),
+          body_of(cube, {2.95e-3, -0.2e-3, 14.4e-3}, {4, 1, 8})};
 }
 std::vector<Body> cube_on_an_edge() {
   const Shape cube = make_box({6e-3, 6e-3, 6e-3});
-  Body above = turned(body_of(cube, {0.7e-3, 0.1e-3, 13e-3 + 3e-3 + std::sqrt(18.0) * 1e-3}, {5, 1, 7}), std::numbers::pi / 4, {0, 1, 0});
+  Body above = turned(body_of(cube, {0.7e-3, 0.1e-3, 13e-3 + 3e-3 + std::sqrt(18.0) * 1e-3}, {5, 1, 7}),
+                      std::numbers::pi / 4, {0, 1, 0});
   above.angular_velocity = {0, 100, 30};
   return {body_of(cube, {0.1e-3, 0.3e-3, 13e-3}, {4, 1, 8}), above};
 }
@@ -226,7 +232,8 @@ TEST(BodiesInLiquid, BodiesInContactGiveTheSameBitsForAnyNumberOfThreads) {
         for (int k = 0; k < one.grid.nz(); ++k)
           for (int j = 0; j < one.grid.ny(); ++j)
             for (int i = 0; i < one.grid.nx(); ++i)
-              ASSERT_EQ(one.flow.velocity_field(c)(i, j, k), more.flow.velocity_field(c)(i, j, k)) << n << " threads";
+              ASSERT_EQ(one.flow.velocity_field(c)(i, j, k), more.flow.velocity_field(c)(i, j, k))
+                  << n << " threads";
       for (std::size_t b = 0; b < one.loads.size(); ++b) {
         ASSERT_EQ(one.loads[b].force, more.loads[b].force) << n << " threads";
         ASSERT_EQ(one.loads[b].torque, more.loads[b].torque) << n << " threads";
@@ -289,12 +296,15 @@ TEST(BodiesInLiquid, DragDoesNotDependOnTheStep) {
 
 TEST(BodiesInLiquid, AFluidAtRestPushesUpByItsWeightAndStaysAtRest) {
   const Vec3 g(3, -2, -9.81);
-  for (const Vec3& at : {Vec3(0, 0, 0), Vec3(0.012, 0.021, -0.017), Vec3(0.031, -0.029, 0.005), Vec3(0.0249, 0.04, -0.051)})
-    for (const Body& body : {body_of(make_box({0.7, 0.6, 0.8}), at),
-                             turned(body_of(make_box({0.7, 0.6, 0.8}), at), 0.4, {1, 2, 3}), body_of(make_sphere(0.8), at)}) {
+  for (const Vec3& at :
+       {Vec3(0, 0, 0), Vec3(0.012, 0.021, -0.017), Vec3(0.031, -0.029, 0.005), Vec3(0.0249, 0.04, -0.051)})
+    for (const Body& body :
+         {body_of(make_box({0.7, 0.6, 0.8}), at),
+          turned(body_of(make_box({0.7, 0.6, 0.8}), at), 0.4, {1, 2, 3}), body_of(make_sphere(0.8), at)}) {
       IncompressibleSetup setup;
       setup.acceleration = g;
-      Bodies b(Grid(even(-1, 1, 32), even(-1, 1, 32), even(-1, 1, 32)), all(BoundaryKind::wall), setup, {body}, Vec3::Zero());
+      Bodies b(Grid(even(-1, 1, 32), even(-1, 1, 32), even(-1, 1, 32)), all(BoundaryKind::wall), setup,
+               {body}, Vec3::Zero());
       for (int n = 0; n < 8; ++n) b.step(0.01);
       const Vec3 weight = kDensity * body.shape.mass_properties().volume * g;
       EXPECT_LT((b.coupling.parts()[0].pressure + weight).norm(), 0.01 * weight.norm()) << at.transpose();

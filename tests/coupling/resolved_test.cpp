@@ -103,7 +103,8 @@ TEST(ResolvedCoupling, ForceIsWhatTheWallsTookAndTorqueItsMoment) {
   setup.body_force = {3, 0, 0};
   ResolvedCoupling coupling(grid, setup);
   SolidMask mask;
-  const std::vector<Body> bodies{body_of(make_sphere(0.6), {0.2, 0, 0}), body_of(make_box({0.5, 0.5, 0.5}), {-0.4, 0, 0})};
+  const std::vector<Body> bodies{body_of(make_sphere(0.6), {0.2, 0, 0}),
+                                 body_of(make_box({0.5, 0.5, 0.5}), {-0.4, 0, 0})};
   coupling.map(bodies, mask);
   EXPECT_TRUE(mask.cells.empty());
   ASSERT_EQ(mask.cut.pressure_impulse.size(), mask.cut.walls.size());

@@ -33,7 +33,8 @@ struct JetBox {
             make_axis({-0.04, -0.01, 0.01, 0.04}, {6, 16, 6}, {0.2, 1, 5}),
             make_axis({0.04, 0.12}, {32}, {2})};
   ResolvedCoupling coupling{grid, {}};
-  std::vector<Body> bodies{Body{.name = "cube", .shape = make_box({7.5e-3, 7.5e-3, 7.5e-3}), .enters_at = {}}};
+  std::vector<Body> bodies{
+      Body{.name = "cube", .shape = make_box({7.5e-3, 7.5e-3, 7.5e-3}), .enters_at = {}}};
   SolidMask solids;
   std::unique_ptr<Incompressible> flow;
   double time = 0.0;
@@ -66,7 +67,8 @@ struct JetBox {
     flow->advance(time, dt, solids);
     Body& b = bodies[0];
     b.position += dt * b.velocity;
-    b.orientation = Quat(Eigen::AngleAxisd(dt * b.angular_velocity.norm(), b.angular_velocity.normalized())) * b.orientation;
+    b.orientation = Quat(Eigen::AngleAxisd(dt * b.angular_velocity.norm(), b.angular_velocity.normalized())) *
+                    b.orientation;
     time += dt;
   }
   void run(int steps) {
@@ -80,7 +82,8 @@ void expect_same_bits(const Incompressible& a, const Incompressible& b) {
     for (int k = 0; k < grid.nz(); ++k)
       for (int j = 0; j < grid.ny(); ++j)
         for (int i = 0; i < grid.nx(); ++i)
-          ASSERT_EQ(a.velocity_field(c)(i, j, k), b.velocity_field(c)(i, j, k)) << c << " " << i << " " << j << " " << k;
+          ASSERT_EQ(a.velocity_field(c)(i, j, k), b.velocity_field(c)(i, j, k))
+              << c << " " << i << " " << j << " " << k;
 }
 
 TEST(Incompressible, GivesTheSameBitsForAnyNumberOfThreads) {
@@ -105,7 +108,8 @@ TEST(Incompressible, ConservesMomentumOfAirSolidsAndBoundaries) {
     const Vec3 start = box.flow->momentum();
     box.run(60);
     const FlowLedger& l = box.flow->ledger();
-    const Vec3 lost = box.flow->momentum() - start - l.momentum_through_boundaries + l.impulse_on_solids - l.displaced;
+    const Vec3 lost =
+        box.flow->momentum() - start - l.momentum_through_boundaries + l.impulse_on_solids - l.displaced;
     const double jet = std::abs(l.momentum_through_boundaries.z()) + l.impulse_on_solids.norm();
     EXPECT_LT(lost.norm(), (kSingle ? 1e-4 : 1e-8) * jet);
     EXPECT_GT(l.impulse_on_solids.z(), 0.0);

@@ -32,7 +32,8 @@ TEST(WallLaw, IsTheLogarithmOfExperimentsFarFromASmoothWall) {
 TEST(WallLaw, AFullyRoughWallIsNikuradses) {
   for (const double sand : {150.0, 500.0, 3000.0})
     for (const double heights : {1.5, 5.0, 40.0}) {
-      const double u = wall_law::u_plus(Real(heights * sand), Real(sand)), rough = std::log(heights) / 0.41 + 8.5;
+      const double u = wall_law::u_plus(Real(heights * sand), Real(sand)),
+                   rough = std::log(heights) / 0.41 + 8.5;
       EXPECT_NEAR(u / rough, 1.0, 0.05) << sand << " " << heights;
     }
 }

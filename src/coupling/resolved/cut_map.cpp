@@ -92,7 +92,8 @@ bool CutMap::find_region(const Body& body, const Vec3& shift, Region& r) const {
     if (!grid_.active(d)) continue;
     const Vec3 along = body.orientation.conjugate() * Vec3::Unit(d);
     const double at = body.position[d] + shift[d];
-    const double high = at + along.dot(body.shape.support(along)), low = at + along.dot(body.shape.support(-along));
+    const double high = at + along.dot(body.shape.support(along)),
+                 low = at + along.dot(body.shape.support(-along));
     if (high <= axis.face.front() || low >= axis.face.back()) return false;
     const int first = std::max(axis.cell_at(low) - kMargin, 0),
               last = std::min(axis.cell_at(high) + kMargin, axis.n - 1);
@@ -108,7 +109,8 @@ void CutMap::measure(Region& r) {
   double widest = 0.0;
   for (int d = 0; d < 3; ++d)
     for (int m = 0; grid_.active(d) && m < r.n[static_cast<std::size_t>(d)]; ++m)
-      widest = std::max(widest, grid_.axis(d).width[static_cast<std::size_t>(r.low[static_cast<std::size_t>(d)] + m)]);
+      widest = std::max(
+          widest, grid_.axis(d).width[static_cast<std::size_t>(r.low[static_cast<std::size_t>(d)] + m)]);
   const Vec3 shift = r.shift;
   const Body& body = *r.body;
   const auto distance = [&](const Vec3& x) { return body.signed_distance(x - shift); };
@@ -119,7 +121,8 @@ void CutMap::measure(Region& r) {
       measure_row(
           nx, 3.5 * widest, [&](int i) { return coordinate(0, r.low[0] + i); },
           [&](int i) {
-            return distance({coordinate(0, r.low[0] + i), coordinate(1, r.low[1] + j), coordinate(2, r.low[2] + k)});
+            return distance(
+                {coordinate(0, r.low[0] + i), coordinate(1, r.low[1] + j), coordinate(2, r.low[2] + k)});
           },
           r.node.data() + static_cast<std::size_t>(k * ny + j) * nx);
   });
@@ -135,7 +138,8 @@ void CutMap::measure(Region& r) {
   });
 }
 
-/// Entry (i, j, k) of edge_[d] is the edge from node (i, j, k) along d, all arrays with the extent of the nodes.
+/// Entry (i, j, k) of edge_[d] is the edge from node (i, j, k) along d, all arrays with the extent of the
+/// nodes.
 void CutMap::cut_edges(const Region& r) {
   const int nx = r.n[0] + 1, ny = r.n[1] + 1, nz = r.n[2] + 1;
   const std::array<int, 3> extent{nx, ny, nz}, step{1, nx, nx * ny};
@@ -154,7 +158,8 @@ void CutMap::cut_edges(const Region& r) {
             continue;
           }
           Vec3 x;
-          for (int e = 0; e < 3; ++e) x[e] = coordinate(e, r.low[static_cast<std::size_t>(e)] + index[static_cast<std::size_t>(e)]);
+          for (int e = 0; e < 3; ++e)
+            x[e] = coordinate(e, r.low[static_cast<std::size_t>(e)] + index[static_cast<std::size_t>(e)]);
           const double start = x[int(d)], length = coordinate(int(d), r.low[d] + index[d] + 1) - start;
           const double t = root(a, b, [&](double s) {
             x[int(d)] = start + s * length;
@@ -223,14 +228,16 @@ void CutMap::record(const Region& r, int region) {
 /// From the distances of the corners of the cell.
 Vec3 CutMap::normal_at(const Region& r, int i, int j, int k) const {
   const int nx = r.n[0] + 1, ny = r.n[1] + 1;
-  const float* first = r.node.data() + static_cast<std::size_t>(((k - r.low[2]) * ny + j - r.low[1]) * nx + i - r.low[0]);
+  const float* first =
+      r.node.data() + static_cast<std::size_t>(((k - r.low[2]) * ny + j - r.low[1]) * nx + i - r.low[0]);
   const int at[3] = {i, j, k};
   Vec3 n{0, 0, 0};
   for (int corner = 0; corner < 8; ++corner) {
     const int up[3] = {corner & 1, (corner >> 1) & 1, corner >> 2};
     const double distance = first[up[0] + nx * (up[1] + ny * up[2])];
     for (int d = 0; d < 3; ++d)
-      if (grid_.active(d)) n[d] += (up[d] ? distance : -distance) / grid_.axis(d).width[static_cast<std::size_t>(at[d])];
+      if (grid_.active(d))
+        n[d] += (up[d] ? distance : -distance) / grid_.axis(d).width[static_cast<std::size_t>(at[d])];
   }
   const double length = n.norm();
   return length > 0.0 ? Vec3(n / length) : Vec3(Vec3::Zero());
@@ -239,7 +246,8 @@ Vec3 CutMap::normal_at(const Region& r, int i, int j, int k) const {
 double CutMap::width_along(const Vec3& normal, int i, int j, int k) const {
   const int at[3] = {i, j, k};
   double width = 0.0;
-  for (int d = 0; d < 3; ++d) width += std::abs(normal[d]) * grid_.axis(d).width[static_cast<std::size_t>(at[d])];
+  for (int d = 0; d < 3; ++d)
+    width += std::abs(normal[d]) * grid_.axis(d).width[static_cast<std::size_t>(at[d])];
   return width;
 }
 
@@ -289,7 +297,8 @@ void CutMap::map(std::span<const Body> bodies, std::span<const double> roughness
     for (int kz = -images[2]; kz <= images[2]; ++kz)
       for (int ky = -images[1]; ky <= images[1]; ++ky)
         for (int kx = -images[0]; kx <= images[0]; ++kx) {
-          const Vec3 shift(kx * grid_.axis(0).length(), ky * grid_.axis(1).length(), kz * grid_.axis(2).length());
+          const Vec3 shift(kx * grid_.axis(0).length(), ky * grid_.axis(1).length(),
+                           kz * grid_.axis(2).length());
           if (static_cast<std::size_t>(used_) == regions_.size()) regions_.emplace_back();
           Region& r = regions_[static_cast<std::size_t>(used_)];
           if (!find_region(bodies[b], shift, r)) continue;
@@ -338,7 +347,8 @@ void CutMap::collect_faces(CutCells& out) const {
       Vec3 x = grid_.centre(r.i, r.j, r.k);
       x[d] = coordinate(d, at[d] + upper);
       f.velocity = static_cast<Real>(region.body->velocity_at(x - region.shift)[d]);
-      face_parts_.push_back({((std::int64_t(f.k) * (grid_.ny() + 1) + f.j) * (grid_.nx() + 1) + f.i) * 3 + d, f});
+      face_parts_.push_back(
+          {((std::int64_t(f.k) * (grid_.ny() + 1) + f.j) * (grid_.nx() + 1) + f.i) * 3 + d, f});
     }
   }
   if (used_ > 1)
@@ -382,8 +392,9 @@ void CutMap::collect_cells(CutCells& out) {
 }
 
 void CutMap::add_cut_cell(std::span<const Record> records, CutCells& out) {
-  const Record& nearest = *std::min_element(
-      records.begin(), records.end(), [](const Record& a, const Record& b) { return a.distance < b.distance; });
+  const Record& nearest =
+      *std::min_element(records.begin(), records.end(),
+                        [](const Record& a, const Record& b) { return a.distance < b.distance; });
   const Region& region = regions_[static_cast<std::size_t>(nearest.region)];
   CutCell c;
   c.i = nearest.i, c.j = nearest.j, c.k = nearest.k;
@@ -433,7 +444,8 @@ void CutMap::add_cut_cell(std::span<const Record> records, CutCells& out) {
     for (int w = c.first_wall; w < c.first_wall + c.walls; ++w) {
       CutWall& wall = out.walls[static_cast<std::size_t>(w)];
       const double share = Vec3(wall.area[0], wall.area[1], wall.area[2]).norm() / total;
-      for (int d = 0; d < 3; ++d) wall.area[static_cast<std::size_t>(d)] += static_cast<Real>(share * (whole - sum)[d]);
+      for (int d = 0; d < 3; ++d)
+        wall.area[static_cast<std::size_t>(d)] += static_cast<Real>(share * (whole - sum)[d]);
     }
   ghost_region_.push_back(nearest.region);  // of cells first; see find_donors
   out.cells.push_back(c);
@@ -475,7 +487,8 @@ int CutMap::carrier_of(const CutCell& c, CutCells& out) const {
     if (!grid_.active(d) || cell[d] < 0 || cell[d] >= grid_.n(d)) continue;
     const double open = 1.0 - double(out.closed[static_cast<std::size_t>(d)](face[0], face[1], face[2]));
     const int index = out.index(cell[0], cell[1], cell[2]);
-    if (index < 0 || (index > 0 && out.cells[static_cast<std::size_t>(index - 1)].carrier != index - 1)) continue;
+    if (index < 0 || (index > 0 && out.cells[static_cast<std::size_t>(index - 1)].carrier != index - 1))
+      continue;
     const double along = (up ? 1.0 : -1.0) * double(c.normal[static_cast<std::size_t>(d)]);
     const double score = open * (1.0 + along);
     if (score > best) {
@@ -517,7 +530,8 @@ void CutMap::list_members(CutCells& out) const {
     CutCell& c = out.cells[static_cast<std::size_t>(out.cells[n].carrier)];
     out.members[static_cast<std::size_t>(c.first_member + c.members++)] = static_cast<int>(n);
     const CutCell& m = out.cells[n];
-    c.carried += static_cast<Real>(double(m.fluid) * grid_.volume(m.i, m.j, m.k) / grid_.volume(c.i, c.j, c.k));
+    c.carried +=
+        static_cast<Real>(double(m.fluid) * grid_.volume(m.i, m.j, m.k) / grid_.volume(c.i, c.j, c.k));
   };
   for (std::size_t n = 0; n < out.cells.size(); ++n)
     if (out.cells[n].carrier == static_cast<int>(n)) add(n);
@@ -532,7 +546,8 @@ void CutMap::list_near(CutCells& out) const {
     for (int k = r.low[2]; k < r.low[2] + r.n[2]; ++k)
       for (int j = r.low[1]; j < r.low[1] + r.n[1]; ++j)
         for (int i = r.low[0]; i < r.low[0] + r.n[0]; ++i)
-          if (out.index(i, j, k) >= 0) out.near.push_back({i, j, k, static_cast<Real>(r.distance[r.at(i, j, k)])});
+          if (out.index(i, j, k) >= 0)
+            out.near.push_back({i, j, k, static_cast<Real>(r.distance[r.at(i, j, k)])});
   }
 }
 
@@ -591,7 +606,8 @@ void CutMap::find_donors(CutCells& out) const {
         }
         if (!there || weight < 1e-3 || !r.holds(cell[0], cell[1], cell[2])) continue;
         const int index = out.index(cell[0], cell[1], cell[2]);
-        if (index < 0 || (index > 0 && out.cells[static_cast<std::size_t>(index - 1)].carrier != index - 1)) continue;
+        if (index < 0 || (index > 0 && out.cells[static_cast<std::size_t>(index - 1)].carrier != index - 1))
+          continue;
         const std::size_t slot = static_cast<std::size_t>(donors++);
         g.donor[slot] = &out.closed[0](cell[0], cell[1], cell[2]) - &out.closed[0](g.i, g.j, g.k);
         g.weight[slot] = static_cast<Real>(weight);

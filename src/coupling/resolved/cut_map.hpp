@@ -9,9 +9,9 @@
 
 namespace ejecta {
 
-/// What bodies leave of the cells of a grid. Where a surface crosses the edges of cells is found on its signed
-/// distance; parts of faces are polygons between these points, and parts of cells follow from their faces, so
-/// that all of them are exact for plane surfaces and continuous as bodies move.
+/// What bodies leave of the cells of a grid. Where a surface crosses the edges of cells is found on its
+/// signed distance; parts of faces are polygons between these points, and parts of cells follow from their
+/// faces, so that all of them are exact for plane surfaces and continuous as bodies move.
 class CutMap {
  public:
   /// `periodic`: axes along which bodies have images.
@@ -27,7 +27,8 @@ class CutMap {
     double roughness = 0.0;
     Vec3 shift{0, 0, 0};  ///< of this image, m
     std::array<int, 3> low{}, n{};
-    std::vector<float> node;      ///< distance of the corners of its cells; far from the surface only its sign is right, m
+    std::vector<float>
+        node;  ///< distance of the corners of its cells; far from the surface only its sign is right, m
     std::vector<float> distance;  ///< of the centres, the mean of their corners, m
     std::size_t at(int i, int j, int k) const {
       return static_cast<std::size_t>((k - low[2]) * n[1] + j - low[1]) * static_cast<std::size_t>(n[0]) +
@@ -65,19 +66,17 @@ class CutMap {
   double part_fluid(const Record& r) const;
   Vec3 normal_at(const Region& r, int i, int j, int k) const;
   double width_along(const Vec3& normal, int i, int j, int k) const;
-  std::int64_t key(int i, int j, int k) const {
-    return (std::int64_t(k) * grid_.ny() + j) * grid_.nx() + i;
-  }
+  std::int64_t key(int i, int j, int k) const { return (std::int64_t(k) * grid_.ny() + j) * grid_.nx() + i; }
 
   const Grid& grid_;
   std::array<bool, 3> periodic_;
   std::vector<Region> regions_;
-  int used_ = 0;                                 // regions in use
-  std::array<std::vector<float>, 3> edge_;       // fluid part of its edges
-  std::array<std::vector<float>, 3> face_;       // closed part of its faces
-  std::vector<std::vector<Record>> planes_;      // scratch, one list a plane
+  int used_ = 0;                             // regions in use
+  std::array<std::vector<float>, 3> edge_;   // fluid part of its edges
+  std::array<std::vector<float>, 3> face_;   // closed part of its faces
+  std::vector<std::vector<Record>> planes_;  // scratch, one list a plane
   std::vector<Record> records_;
-  std::vector<int> ghost_region_;                // of every ghost of the map
+  std::vector<int> ghost_region_;  // of every ghost of the map
   struct FacePart {
     std::int64_t key;
     CutFace face;

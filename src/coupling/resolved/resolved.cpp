@@ -186,7 +186,8 @@ void ResolvedCoupling::collect_forcing(std::span<const Body> bodies, const Solid
     m.velocity = body.velocity;
     m.angular_momentum = momentum;
     m.known = true;
-    if (volume[b] > 0.0) loads[b].force -= setup_.fluid_density * body.shape.mass_properties().volume * setup_.gravity;
+    if (volume[b] > 0.0)
+      loads[b].force -= setup_.fluid_density * body.shape.mass_properties().volume * setup_.gravity;
   }
 }
 
@@ -211,8 +212,8 @@ void ResolvedCoupling::restore(std::span<const double> state) {
   motion_.resize(state.size() / 19);
   parts_.resize(motion_.size());
   for (std::size_t b = 0; b < motion_.size(); ++b) {
-    for (Vec3* v : {&motion_[b].velocity, &motion_[b].angular_momentum, &motion_[b].push.force, &motion_[b].push.torque,
-                    &parts_[b].pressure, &parts_[b].friction})
+    for (Vec3* v : {&motion_[b].velocity, &motion_[b].angular_momentum, &motion_[b].push.force,
+                    &motion_[b].push.torque, &parts_[b].pressure, &parts_[b].friction})
       *v = in.vec3();
     motion_[b].known = in.whole(0, 1) == 1;
   }

@@ -10,14 +10,16 @@
 
 namespace ejecta {
 
-/// How the flow sees bodies: as cut cells with walls (incompressible), or as cells it drives to their velocity, whose
-/// reaction is the force (compressible).
+/// How the flow sees bodies: as cut cells with walls (incompressible), or as cells it drives to their
+/// velocity, whose reaction is the force (compressible).
 enum class BodiesAs { cut_cells, forced_cells };
 
 struct CouplingSetup {
   double fluid_density = 0.0;  ///< kg/m3
-  Vec3 gravity{0, 0, 0};       ///< acts on the fluid as well, hidden in its hydrostatic pressure: returns as buoyancy
-  Vec3 body_force{0, 0, 0};    ///< m/s2 that drives the fluid like a gradient of pressure: acts on bodies by volume
+  Vec3 gravity{0, 0,
+               0};  ///< acts on the fluid as well, hidden in its hydrostatic pressure: returns as buoyancy
+  Vec3 body_force{0, 0,
+                  0};  ///< m/s2 that drives the fluid like a gradient of pressure: acts on bodies by volume
   BodiesAs bodies = BodiesAs::cut_cells;
   std::array<bool, 3> periodic{};
   std::vector<double> roughness;  ///< of every body, sand-grain height, m
@@ -35,12 +37,14 @@ class ResolvedCoupling {
 
   /// Fills mask.cut, or mask.cells with the cells whose centres lie inside bodies.
   void map(std::span<const Body> bodies, SolidMask& mask);
-  /// Force and torque on every body over the last flow step of length dt. Cut cells: pressure and friction on its walls
-  /// and buoyancy, averaged over the steps before with the weight of the displaced fluid against that of the body,
-  /// lambda = rho V / (m + rho V): F += (1 - lambda) (F_now - F). The fluid answers an acceleration within the step that
-  /// follows, so that for a body lighter than its added mass the plain force grows without bound from step to step; this
-  /// one settles on the same value, and for ore in air lambda is 4e-4. Forced cells: F = -sum(impulse) / dt + rho V a - rho V g, where the second term returns the inertia
-  /// of the fictitious fluid inside the body (Uhlmann 2005, eq. 18), with the body's acceleration over the step before.
+  /// Force and torque on every body over the last flow step of length dt. Cut cells: pressure and friction on
+  /// its walls and buoyancy, averaged over the steps before with the weight of the displaced fluid against
+  /// that of the body, lambda = rho V / (m + rho V): F += (1 - lambda) (F_now - F). The fluid answers an
+  /// acceleration within the step that follows, so that for a body lighter than its added mass the plain
+  /// force grows without bound from step to step; this one settles on the same value, and for ore in air
+  /// lambda is 4e-4. Forced cells: F = -sum(impulse) / dt + rho V a - rho V g, where the second term returns
+  /// the inertia of the fictitious fluid inside the body (Uhlmann 2005, eq. 18), with the body's acceleration
+  /// over the step before.
   void collect(std::span<const Body> bodies, const SolidMask& mask, double dt, std::span<Load> loads);
 
   const std::vector<ForceParts>& parts() const { return parts_; }

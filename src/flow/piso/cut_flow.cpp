@@ -15,7 +15,8 @@ using Cell = std::array<int, 3>;
 using Triple = std::array<Real, 3>;
 
 /// Cell Reynolds number (speed along the wall times distance over viscosity) from which on a laminar layer is
-/// thinner than the cells that should show it: the stencils then see the flow slip, the wall's friction apart.
+/// thinner than the cells that should show it: the stencils then see the flow slip, the wall's friction
+/// apart.
 constexpr Real kResolvedLayer = Real(100);
 /// Nearest a centre counts to its wall, parts of a cell: friction there is implicit anyway.
 constexpr Real kNearest = Real(0.05);
@@ -103,21 +104,23 @@ CutFlow::Gradient CutFlow::gradient(const CutCells& cut, const CutCell& carrier,
   return g;
 }
 
-/// Friction of the walls of a carrier over the time `step`, implicit; what it takes is counted `weight` times (kg).
+/// Friction of the walls of a carrier over the time `step`, implicit; what it takes is counted `weight` times
+/// (kg).
 void CutFlow::rub(CutCells& cut, const CutCell& c, const WallTurbulence& turbulence, Real step, double weight,
                   std::array<Real, 3>& v) const {
   const Real volume = c.carried * static_cast<Real>(grid_.volume(c.i, c.j, c.k));
   const bool turbulent = turbulence.present();
-  const Real y = turbulent ? wall_distance(grid_, c) : std::max(c.distance, kNearest * width_along_normal(grid_, c));
+  const Real y =
+      turbulent ? wall_distance(grid_, c) : std::max(c.distance, kNearest * width_along_normal(grid_, c));
   for_each_wall(cut, c, [&](const CutWall& wall, int w) {
     const Real area = norm(wall.area);
     if (area <= Real(0)) return;
     Triple moved{v[0] - wall.velocity[0], v[1] - wall.velocity[1], v[2] - wall.velocity[2]};
     if (turbulent) moved = velocity_along(wall, v);
-    const Real conductance = turbulent ? wall_law::conductance(norm(moved), y, nu_,
-                                                               std::max(turbulence.k(c.i, c.j, c.k), Real(0)),
-                                                               wall.roughness)
-                                       : nu_ / y;
+    const Real conductance =
+        turbulent ? wall_law::conductance(norm(moved), y, nu_, std::max(turbulence.k(c.i, c.j, c.k), Real(0)),
+                                          wall.roughness)
+                  : nu_ / y;
     const Real rate = step * area * conductance / volume, part = rate / (Real(1) + rate);
     for (std::size_t e = 0; e < 3; ++e) {
       const Real change = part * moved[e];
@@ -127,7 +130,8 @@ void CutFlow::rub(CutCells& cut, const CutCell& c, const WallTurbulence& turbule
   });
 }
 
-Vec3 CutFlow::predict(CutCells& cut, const MomentumTerms& t, const WallTurbulence& turbulence, double weight) {
+Vec3 CutFlow::predict(CutCells& cut, const MomentumTerms& t, const WallTurbulence& turbulence,
+                      double weight) {
   for_each_index(static_cast<int>(cut.cells.size()), [&](int n) {
     const CutCell& c = cut.cells[static_cast<std::size_t>(n)];
     Vec3& displaced = sums_[static_cast<std::size_t>(n)];
@@ -136,14 +140,16 @@ Vec3 CutFlow::predict(CutCells& cut, const MomentumTerms& t, const WallTurbulenc
     const Triple here{t.u[0](c.i, c.j, c.k), t.u[1](c.i, c.j, c.k), t.u[2](c.i, c.j, c.k)};
     Triple balance{0, 0, 0};
     double outflow = 0.0;
-    for_each_open_face(grid_, cut, c,
-                       [&](const CutCell&, int d, const Cell& f, const Cell&, Real sign, Real open, Real area) {
-                         const FaceMomentum at = momentum_at_face(grid_, t, d, f[0], f[1], f[2]);
-                         const Real through = sign * area * open * t.face_velocity[static_cast<std::size_t>(d)](f[0], f[1], f[2]);
-                         outflow += double(through);
-                         for (std::size_t e = 0; e < 3; ++e)
-                           balance[e] += through * (at.carried[e] - here[e]) - sign * open * area * at.stress[e];
-                       });
+    for_each_open_face(
+        grid_, cut, c,
+        [&](const CutCell&, int d, const Cell& f, const Cell&, Real sign, Real open, Real area) {
+          const FaceMomentum at = momentum_at_face(grid_, t, d, f[0], f[1], f[2]);
+          const Real through =
+              sign * area * open * t.face_velocity[static_cast<std::size_t>(d)](f[0], f[1], f[2]);
+          outflow += double(through);
+          for (std::size_t e = 0; e < 3; ++e)
+            balance[e] += through * (at.carried[e] - here[e]) - sign * open * area * at.stress[e];
+        });
     const Triple g = gradient(cut, c, t.pressure).value;
     gradient_[static_cast<std::size_t>(n)] = g;
     const Real volume = c.carried * static_cast<Real>(grid_.volume(c.i, c.j, c.k)), step = t.b * t.dt;
@@ -169,7 +175,8 @@ Vec3 CutFlow::predict(CutCells& cut, const MomentumTerms& t, const WallTurbulenc
   return total;
 }
 
-void CutFlow::extend(const CutCells& cut, const std::array<FieldView, 3>& u, const WallTurbulence& turbulence) {
+void CutFlow::extend(const CutCells& cut, const std::array<FieldView, 3>& u,
+                     const WallTurbulence& turbulence) {
   for_each_index(static_cast<int>(cut.ghosts.size()), [&](int n) {
     const GhostCell& g = cut.ghosts[static_cast<std::size_t>(n)];
     Triple& value = values_[static_cast<std::size_t>(n)];
@@ -211,7 +218,8 @@ void CutFlow::extend_pressure(const CutCells& cut, FieldView p) {
       Cell beyond = from, face = from;
       beyond[s] += away;
       face[s] += away > 0;
-      if (cut.closed[s](face[0], face[1], face[2]) >= Real(1) || face[s] <= 0 || face[s] >= grid_.n(d)) continue;
+      if (cut.closed[s](face[0], face[1], face[2]) >= Real(1) || face[s] <= 0 || face[s] >= grid_.n(d))
+        continue;
       const Real slope = (p(beyond[0], beyond[1], beyond[2]) - sum) * m.inv_distance[face[s]];
       sum -= slope * std::abs(m.centre[from[s]] - m.centre[to[s]]);
     }
@@ -255,7 +263,8 @@ void CutFlow::face_velocities(const CutCells& cut, const std::array<ConstFieldVi
   const auto roughness = [&](int d, const Cell& face, Real& value) {
     const std::size_t s = static_cast<std::size_t>(d);
     Real below = 0, above = 0;
-    if (face[s] <= 0 || face[s] >= grid_.n(d) || cut.closed[s](face[0], face[1], face[2]) >= Real(1)) return false;
+    if (face[s] <= 0 || face[s] >= grid_.n(d) || cut.closed[s](face[0], face[1], face[2]) >= Real(1))
+      return false;
     Cell low = face;
     --low[s];
     if (!gradient_at(low, d, below) || !gradient_at(face, d, above)) return false;
@@ -273,8 +282,8 @@ void CutFlow::face_velocities(const CutCells& cut, const std::array<ConstFieldVi
     const Metrics m = grid_.metrics(d);
     const Real w = m.weight[face[s]];
     const Real velocity = w * u[s](low[0], low[1], low[2]) + (Real(1) - w) * u[s](face[0], face[1], face[2]);
-    // As in face_velocities() of the whole grid; not on the last face before a wall, where the gradient of the cell is
-    // one-sided and its roughness is not that of p.
+    // As in face_velocities() of the whole grid; not on the last face before a wall, where the gradient of
+    // the cell is one-sided and its roughness is not that of p.
     Cell below = face, above = face;
     --below[s];
     ++above[s];

@@ -14,13 +14,14 @@ struct WallTurbulence {
   bool present() const { return k.origin != nullptr; }
 };
 
-/// What a step does in cut cells after the kernels have treated the whole grid as fluid. A cell that keeps its
-/// momentum (a carrier) is balanced over the fluid of itself and of the small cells it carries:
+/// What a step does in cut cells after the kernels have treated the whole grid as fluid. A cell that keeps
+/// its momentum (a carrier) is balanced over the fluid of itself and of the small cells it carries:
 ///
 ///   V du/dt = -sum A_f [q (u_f - u) - nu_eff (grad u + grad u^T)] - V grad p - wall friction
 ///
-/// A_f: open parts of faces. The form in u_f - u leaves alone what moves with its solid. The wall takes the friction of
-/// the law of the wall and the pressure that closes the balance, V grad p - sum A_f p_f: nothing else passes it.
+/// A_f: open parts of faces. The form in u_f - u leaves alone what moves with its solid. The wall takes the
+/// friction of the law of the wall and the pressure that closes the balance, V grad p - sum A_f p_f: nothing
+/// else passes it.
 class CutFlow {
  public:
   CutFlow(const Grid& grid, double viscosity);
@@ -35,14 +36,14 @@ class CutFlow {
   void resume();
 
   /// Writes terms.out of cut cells, friction included, which is counted `weight` times (density, kg/m3) in
-  /// cut.friction_impulse; of ghosts it says that nothing changes. Returns the momentum over density that the displaced
-  /// fluid takes along, m4/s2.
+  /// cut.friction_impulse; of ghosts it says that nothing changes. Returns the momentum over density that the
+  /// displaced fluid takes along, m4/s2.
   Vec3 predict(CutCells& cut, const MomentumTerms& terms, const WallTurbulence& turbulence, double weight);
   /// Ghosts take what the stencils should see.
   void extend(const CutCells& cut, const std::array<FieldView, 3>& u, const WallTurbulence& turbulence);
-  /// Small cells take the pressure of their carrier, extended by the gradient beyond them, and cells in solids that of
-  /// their donors. What the corrections gave small cells would add up from step to step: their velocity, being
-  /// another's, never answers it.
+  /// Small cells take the pressure of their carrier, extended by the gradient beyond them, and cells in
+  /// solids that of their donors. What the corrections gave small cells would add up from step to step: their
+  /// velocity, being another's, never answers it.
   void extend_pressure(const CutCells& cut, FieldView p);
   /// q on the faces of cut cells, of what flows through their open parts; closed ones move with the solid.
   void face_velocities(const CutCells& cut, const std::array<ConstFieldView, 3>& u_star, ConstFieldView p,
@@ -60,8 +61,9 @@ class CutFlow {
  private:
   void rub(CutCells& cut, const CutCell& carrier, const WallTurbulence& turbulence, Real step, double weight,
            std::array<Real, 3>& velocity) const;
-  /// Of p in a carrier: the mean over its open faces, exact where p is linear. What volume times gradient asks of the
-  /// walls beyond the pressure of their cell makes up for the rest of it: m4/s2 for p over density.
+  /// Of p in a carrier: the mean over its open faces, exact where p is linear. What volume times gradient
+  /// asks of the walls beyond the pressure of their cell makes up for the rest of it: m4/s2 for p over
+  /// density.
   struct Gradient {
     std::array<Real, 3> value, beyond;
   };

@@ -12,8 +12,13 @@ constexpr int kMostIterations = 60;
 
 }  // namespace
 
-CutPressure::CutPressure(const Grid& grid, FastDiagonalPoisson& whole, const std::array<PoissonBoundary, 6>& boundary)
-    : grid_(grid), whole_(whole), boundary_(boundary), work_(grid.make_field()), sources_(grid.make_field()) {}
+CutPressure::CutPressure(const Grid& grid, FastDiagonalPoisson& whole,
+                         const std::array<PoissonBoundary, 6>& boundary)
+    : grid_(grid),
+      whole_(whole),
+      boundary_(boundary),
+      work_(grid.make_field()),
+      sources_(grid.make_field()) {}
 
 void CutPressure::begin(const CutCells& cut) {
   const Metrics m[3] = {grid_.metrics(0), grid_.metrics(1), grid_.metrics(2)};
@@ -60,7 +65,8 @@ void CutPressure::begin(const CutCells& cut) {
     box.k0 = std::min(box.k0, e.k), box.k1 = std::max(box.k1, e.k + 1);
   }
   if (!entries_.empty() && whole_.has_windows()) whole_.resize(window_, box);
-  for (auto* v : {&phi_, &closed_, &residual_, &z_, &direction_, &whole_direction_, &source_}) v->resize(entries_.size());
+  for (auto* v : {&phi_, &closed_, &residual_, &z_, &direction_, &whole_direction_, &source_})
+    v->resize(entries_.size());
 }
 
 void CutPressure::through_closed(const std::vector<Real>& f, std::vector<Real>& out) {
@@ -85,7 +91,8 @@ double CutPressure::product(const std::vector<Real>& a, const std::vector<Real>&
 }
 
 void CutPressure::scatter(const std::vector<Real>& r) {
-  for (std::size_t n = 0; n < entries_.size(); ++n) sources_(entries_[n].i, entries_[n].j, entries_[n].k) = r[n];
+  for (std::size_t n = 0; n < entries_.size(); ++n)
+    sources_(entries_[n].i, entries_[n].j, entries_[n].k) = r[n];
 }
 
 void CutPressure::to_window(const std::vector<Real>& r) {
@@ -112,8 +119,8 @@ void CutPressure::invert(const std::vector<Real>& r, std::vector<Real>& out) {
   from_window(out);
 }
 
-/// With L the operator of the whole grid and C what passes closed faces, (L - C) phi = rhs. Residuals and L times the
-/// directions vanish but on the entries, since L is inverted exactly.
+/// With L the operator of the whole grid and C what passes closed faces, (L - C) phi = rhs. Residuals and L
+/// times the directions vanish but on the entries, since L is inverted exactly.
 void CutPressure::solve(const CutCells& cut, FieldView phi, double tolerance) {
   for (const GhostCell& g : cut.ghosts)
     if (cut.index(g.i, g.j, g.k) < 0) phi(g.i, g.j, g.k) = 0;  // but for round-off it is
@@ -161,7 +168,8 @@ void CutPressure::solve(const CutCells& cut, FieldView phi, double tolerance) {
   }
   scatter(source_);
   whole_.solve(sources_.view(), work_.view());
-  for_each_cell(grid_.range(), [=, work = work_.view()](int i, int j, int k) { phi(i, j, k) += work(i, j, k); });
+  for_each_cell(grid_.range(),
+                [=, work = work_.view()](int i, int j, int k) { phi(i, j, k) += work(i, j, k); });
   for (const Entry& e : entries_) sources_(e.i, e.j, e.k) = 0;
 }
 

@@ -12,18 +12,18 @@ namespace ejecta {
 ///
 ///   sum A_f (phi_n - phi) / distance = rhs      A_f: open part of the area
 ///
-/// by conjugate gradients with the equation of the whole grid as preconditioner, which is solved exactly. What the two
-/// matrices differ in lives on the faces of cut cells, so all that iterates are a few thousand numbers: the flows w that
-/// sources in and beside the solids must add so that nothing passes closed faces. For a sphere the eigenvalues lie
-/// between 1/2 and 1 whatever the grid.
+/// by conjugate gradients with the equation of the whole grid as preconditioner, which is solved exactly.
+/// What the two matrices differ in lives on the faces of cut cells, so all that iterates are a few thousand
+/// numbers: the flows w that sources in and beside the solids must add so that nothing passes closed faces.
+/// For a sphere the eigenvalues lie between 1/2 and 1 whatever the grid.
 class CutPressure {
  public:
   CutPressure(const Grid& grid, FastDiagonalPoisson& whole, const std::array<PoissonBoundary, 6>& boundary);
 
   /// The faces of this step.
   void begin(const CutCells& cut);
-  /// phi, given as the right-hand side (volume flow over dt, m3/s2), becomes the solution; stops when what still passes
-  /// closed faces is `tolerance` of what would without them.
+  /// phi, given as the right-hand side (volume flow over dt, m3/s2), becomes the solution; stops when what
+  /// still passes closed faces is `tolerance` of what would without them.
   void solve(const CutCells& cut, FieldView phi, double tolerance);
   int iterations() const { return iterations_; }  ///< of the last solve
 

@@ -17,11 +17,11 @@ namespace {
 
 /// What each of the two stages of Heun's method counts in a step.
 constexpr double kStageWeight = 0.5;
-/// What may pass closed faces after a correction, of what would without it. Pressure is incremental: what is left over
-/// is met again in the next correction. With 0.01 the force on a fixed cube is the same to 2e-5.
+/// What may pass closed faces after a correction, of what would without it. Pressure is incremental: what is
+/// left over is met again in the next correction. With 0.01 the force on a fixed cube is the same to 2e-5.
 constexpr double kClosedTolerance = 0.1;
-/// Time of the pressure's filter (projection.hpp), parts of the step at Courant number 1: takes a quarter of what
-/// alternates in each correction and is the same for all Courant numbers from this one on.
+/// Time of the pressure's filter (projection.hpp), parts of the step at Courant number 1: takes a quarter of
+/// what alternates in each correction and is the same for all Courant numbers from this one on.
 constexpr double kFilter = 0.25;
 
 std::array<PoissonBoundary, 6> poisson_boundaries(const std::array<Boundary, 6>& faces) {
@@ -143,13 +143,15 @@ BoundaryFlow Incompressible::predict(double a, double b, double time, Real dt, C
   t.dt = dt;
   t.increment_only = smoothing_;
   const BoundaryFlow through = predict_momentum(grid_, t, boundary_sums_);
-  move_displaced(kStageWeight * double(dt) * cut_flow_.predict(cut, t, wall_turbulence(), weight * setup_.density));
+  move_displaced(kStageWeight * double(dt) *
+                 cut_flow_.predict(cut, t, wall_turbulence(), weight * setup_.density));
   for (int c = 0; smoothing_ && c < 3; ++c) smoother_.apply(u_star_[c].view(), {t.old[c], t.a, t.u[c], t.b});
   return through;
 }
 
 WallTurbulence Incompressible::wall_turbulence() const {
-  return turbulence_ ? WallTurbulence{turbulence_->k().view(), turbulence_->eddy_viscosity()} : WallTurbulence{};
+  return turbulence_ ? WallTurbulence{turbulence_->k().view(), turbulence_->eddy_viscosity()}
+                     : WallTurbulence{};
 }
 
 void Incompressible::correct(const CutCells& cut, Real dt) {
@@ -211,7 +213,8 @@ void Incompressible::advance(double time, double dt, SolidMask& solids) {
       boundaries_.fill_pressure(p_.view(), views(q_), true);
     }
   }
-  if (!cut.empty()) boundaries_.fill_pressure(p_.view(), views(q_), true);  // of bodies across the faces of the box
+  if (!cut.empty())
+    boundaries_.fill_pressure(p_.view(), views(q_), true);  // of bodies across the faces of the box
   cut_flow_.press(cut, p_.view(), dt * setup_.density);
   cut_flow_.extend_pressure(cut, p_.view());
   for (std::size_t w = 0; w < cut.walls.size(); ++w)
@@ -227,7 +230,8 @@ void Incompressible::advance(double time, double dt, SolidMask& solids) {
 
 void Incompressible::book_boundaries(const BoundaryFlow& through, double dt) {
   const double factor = kStageWeight * dt * setup_.density;
-  ledger_.momentum_through_boundaries += factor * (through.momentum + setup_.acceleration * (box_volume_ - cut_flow_.solid_volume()));
+  ledger_.momentum_through_boundaries +=
+      factor * (through.momentum + setup_.acceleration * (box_volume_ - cut_flow_.solid_volume()));
   ledger_.mass_through_boundaries += factor * through.volume;
   ledger_.mass_in += factor * through.volume_in;
   book_pressure(p_.view(), kStageWeight, dt);

@@ -39,8 +39,8 @@ struct FlowLedger {
   double mass_through_boundaries = 0;         ///< kg since construction, net, positive into the box
   double mass_in = 0;                         ///< kg since construction, what came in
   Vec3 impulse_on_solids{0, 0, 0};            ///< N s
-  /// N s, what moving solids take from and add to the fluid in the box by changing its volume cell by cell: the error
-  /// of their geometry in time, but for what the first step takes out where solids stand.
+  /// N s, what moving solids take from and add to the fluid in the box by changing its volume cell by cell:
+  /// the error of their geometry in time, but for what the first step takes out where solids stand.
   Vec3 displaced{0, 0, 0};
 };
 
@@ -52,8 +52,8 @@ struct FlowLedger {
 ///   velocity
 ///             u'  = project(force(u**))                 second pressure correction (more: repeated here)
 ///
-/// which is Heun's method: second order in time, stable to a Courant number of 1. Solids cut cells (cut_flow.hpp): the
-/// corrections know the open part of every face, so that nothing ever passes a surface.
+/// which is Heun's method: second order in time, stable to a Courant number of 1. Solids cut cells
+/// (cut_flow.hpp): the corrections know the open part of every face, so that nothing ever passes a surface.
 class Incompressible {
  public:
   Incompressible(const Grid& grid, std::array<Boundary, 6> boundaries, const IncompressibleSetup& setup);
@@ -90,7 +90,8 @@ class Incompressible {
   FlowLedger& ledger() { return ledger_; }
   /// False as soon as any velocity is not finite; `where` gets the first such cell.
   bool finite(Vec3* where = nullptr) const;
-  /// To be called after `state()` has been filled again: brings boundary states to `time`, and what is read off it.
+  /// To be called after `state()` has been filled again: brings boundary states to `time`, and what is read
+  /// off it.
   void resume(double time) {
     boundaries_.update(time);
     cut_flow_.resume();
@@ -121,7 +122,7 @@ class Incompressible {
   Field p_, phi_;
   IncrementSmoother smoother_;
   bool smoothing_ = false;
-  Real filter_time_ = Real(1e30);  // s, of the pressure
+  Real filter_time_ = Real(1e30);                       // s, of the pressure
   double explicit_dt_ = 1e300, largest_viscosity_ = 0;  // of the last stable_dt()
   double convection_ = -1;                              // largest sum |u| / h, 1/s; negative: not known
   std::vector<BoundaryFlow> boundary_sums_;             // scratch

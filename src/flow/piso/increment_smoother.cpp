@@ -84,7 +84,8 @@ template <class Smooth>
 void IncrementSmoother::with_cut_lines(FieldView delta, int axis, int first, int last, const Base* base,
                                        const Smooth& smooth) const {
   const std::size_t d = static_cast<std::size_t>(axis);
-  const int begin = first_line_[d][static_cast<std::size_t>(first)], end = first_line_[d][static_cast<std::size_t>(last)];
+  const int begin = first_line_[d][static_cast<std::size_t>(first)],
+            end = first_line_[d][static_cast<std::size_t>(last)];
   if (begin == end) return smooth();
   const int n = static_cast<int>(operator_[d].volume.size());
   const std::ptrdiff_t step = d == 0 ? 1 : d == 1 ? delta.sy : delta.sz;

@@ -21,8 +21,8 @@ namespace ejecta {
 class IncrementSmoother {
  public:
   explicit IncrementSmoother(const Grid& grid);
-  /// nu dt, m2. Lines of cells that solids cut are smoothed on their own: nothing passes closed faces, and what is kept
-  /// is the sum over the fluid. `carried`: part of a cell's volume that counts, 0 in solids.
+  /// nu dt, m2. Lines of cells that solids cut are smoothed on their own: nothing passes closed faces, and
+  /// what is kept is the sum over the fluid. `carried`: part of a cell's volume that counts, 0 in solids.
   void prepare(double nu_dt, const CutCells& cut, ConstFieldView carried);
   /// What the smoothed increment is added to, a one + b two, and the smallest value of the sum.
   struct Base {
@@ -47,7 +47,8 @@ class IncrementSmoother {
   };
   /// Calls smooth() for everything, but puts what it did to the lines [first, last) of an axis right.
   template <class Smooth>
-  void with_cut_lines(FieldView delta, int axis, int first, int last, const Base* base, const Smooth& smooth) const;
+  void with_cut_lines(FieldView delta, int axis, int first, int last, const Base* base,
+                      const Smooth& smooth) const;
   void solve_line(int axis, Line line, Real* values) const;
   void list_lines(const CutCells& cut);
 
@@ -62,7 +63,7 @@ class IncrementSmoother {
   double nu_dt_ = 0;
   ConstFieldView carried_;
   std::array<ConstFieldView, 3> closed_;
-  std::array<std::vector<Line>, 3> lines_;     // that solids cut, by axis; sorted by b, in z by b = j
+  std::array<std::vector<Line>, 3> lines_;      // that solids cut, by axis; sorted by b, in z by b = j
   std::array<std::vector<int>, 3> first_line_;  // of every b, and their number
   std::vector<char> marked_;                    // scratch
 };

@@ -165,7 +165,8 @@ FaceMomentum momentum_at_face(const Grid& grid, const MomentumTerms& t, int d, i
     if (t.eddy_viscosity.origin) {
       const std::ptrdiff_t step = stride(t.u[0], c);
       const Real low = m[c].inv_span[c == d ? at[c] - 1 : at[c]], high = m[c].inv_span[at[c]];
-      strain += f.weight * derivative(normal - s, step, low) + (Real(1) - f.weight) * derivative(normal, step, high);
+      strain += f.weight * derivative(normal - s, step, low) +
+                (Real(1) - f.weight) * derivative(normal, step, high);
     }
     out.stress[static_cast<std::size_t>(c)] = viscosity * strain;
   }

@@ -34,8 +34,8 @@ struct BoundaryFlow {
   double volume_in = 0;    ///< m3/s
 };
 
-/// What passes a face along d, of every component: the value carried by the flow through it, m/s, and the viscous
-/// stress over density, m2/s2. The lower face of cell (i, j, k).
+/// What passes a face along d, of every component: the value carried by the flow through it, m/s, and the
+/// viscous stress over density, m2/s2. The lower face of cell (i, j, k).
 struct FaceMomentum {
   std::array<Real, 3> carried, stress;
 };

@@ -7,9 +7,11 @@
 namespace ejecta {
 namespace {
 
-/// r of face_velocities() on a face with two cells and a ghost or more on either side: `pc` points to the cell above it.
+/// r of face_velocities() on a face with two cells and a ghost or more on either side: `pc` points to the
+/// cell above it.
 EJECTA_KERNEL Real filtered_roughness(const Real* pc, std::ptrdiff_t s, const Metrics& m, int at) {
-  // Differences at the faces at - 2 ... at + 2, gradients of the cells between them, roughness of the inner three faces
+  // Differences at the faces at - 2 ... at + 2, gradients of the cells between them, roughness of the inner
+  // three faces
   const Real d0 = pc[-2 * s] - pc[-3 * s], d1 = pc[-s] - pc[-2 * s], d2 = pc[0] - pc[-s], d3 = pc[s] - pc[0],
              d4 = pc[2 * s] - pc[s];
   const auto gradient = [&](int cell, Real low, Real high) __attribute__((always_inline)) {
@@ -20,14 +22,15 @@ EJECTA_KERNEL Real filtered_roughness(const Real* pc, std::ptrdiff_t s, const Me
   const auto rough = [&](int face, Real low, Real high, Real d) __attribute__((always_inline)) {
     return high + m.weight[face] * (low - high) - d * m.inv_distance[face];
   };
-  return Real(0.5) * rough(at, g1, g2, d2) - Real(0.25) * (rough(at - 1, g0, g1, d1) + rough(at + 1, g2, g3, d3));
+  return Real(0.5) * rough(at, g1, g2, d2) -
+         Real(0.25) * (rough(at - 1, g0, g1, d1) + rough(at + 1, g2, g3, d3));
 }
 
-/// Face velocities along D of row (., j, k), the last face of a row in x included. On the faces of the box, which
-/// only periodic ones keep, there are not enough ghosts for the filter.
+/// Face velocities along D of row (., j, k), the last face of a row in x included. On the faces of the box,
+/// which only periodic ones keep, there are not enough ghosts for the filter.
 template <int D>
-void faces_along(const Grid& grid, const Metrics& m, ConstFieldView u, ConstFieldView p, Real filter_time, FieldView q,
-                 int j, int k) {
+void faces_along(const Grid& grid, const Metrics& m, ConstFieldView u, ConstFieldView p, Real filter_time,
+                 FieldView q, int j, int k) {
   const std::ptrdiff_t s = stride(p, D);
   const Real *p_row = p.row(j, k), *u_row = u.row(j, k);
   Real* q_row = q.row(j, k);
@@ -46,7 +49,8 @@ void faces_along(const Grid& grid, const Metrics& m, ConstFieldView u, ConstFiel
   } else if (index > 0 && index < n) {
     for_each_lane(0, grid.nx(), filtered);
   } else {
-    for_each_lane(0, grid.nx(), [=](int i) __attribute__((always_inline)) { q_row[i] = mean(i); });
+    for_each_lane(
+        0, grid.nx(), [=](int i) __attribute__((always_inline)) { q_row[i] = mean(i); });
   }
 }
 

@@ -7,10 +7,11 @@
 /// corrected cells. p is pressure over density throughout, m2/s2.
 namespace ejecta {
 
-/// q = interpolated u_star + filter_time r on all inner (and periodic) faces. r filters the pressure that alternates from cell to
-/// cell: with R = interpolated cell gradient of p - face gradient of p (Rhie & Chow 1983), r = R/2 - (R_below +
-/// R_above)/4 along the face's axis. R alone damps with h^2 p'''. `filter_time`, at most the step, must not depend on it, or the steady
-/// flow around an edge does (the force on a body of ten cells by 5 %).
+/// q = interpolated u_star + filter_time r on all inner (and periodic) faces. r filters the pressure that
+/// alternates from cell to cell: with R = interpolated cell gradient of p - face gradient of p (Rhie & Chow
+/// 1983), r = R/2 - (R_below + R_above)/4 along the face's axis. R alone damps with h^2 p'''. `filter_time`,
+/// at most the step, must not depend on it, or the steady flow around an edge does (the force on a body of
+/// ten cells by 5 %).
 void face_velocities(const Grid& grid, const std::array<ConstFieldView, 3>& u_star, ConstFieldView p,
                      Real filter_time, const std::array<FieldView, 3>& q);
 

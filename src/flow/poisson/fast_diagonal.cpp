@@ -138,7 +138,8 @@ Real* FastDiagonalPoisson::transform(Window& w) {
   const std::ptrdiff_t plane = static_cast<std::ptrdiff_t>(ldx) * ny_;
   for_each_index(c.k1 - c.k0, [&](int k) {
     Real* scratch = thread_scratch(static_cast<std::size_t>(w.width) * static_cast<std::size_t>(ny_));
-    small_gemm(ny_, w.width, rows, fy.row(0, 0) + c.j0, int(fy.sy), w.row(c.j0, c.k0 + k), w.width, scratch, w.width);
+    small_gemm(ny_, w.width, rows, fy.row(0, 0) + c.j0, int(fy.sy), w.row(c.j0, c.k0 + k), w.width, scratch,
+               w.width);
     small_gemm(ny_, ldx, columns, scratch, w.width, fx.row(w.first, 0), int(fx.sy), modes + k * plane, ldx);
   });
   return modes;
@@ -149,8 +150,10 @@ void FastDiagonalPoisson::transform_back(Window& w, const Real* modes, std::ptrd
   const FieldView bx = axis_[0].backward.view(), by = axis_[1].backward.view();
   for_each_index(c.k1 - c.k0, [&](int k) {
     Real* scratch = thread_scratch(static_cast<std::size_t>(w.width) * static_cast<std::size_t>(ny_));
-    small_gemm(ny_, w.width, nx_, modes + k * plane, ld, bx.row(0, 0) + w.first, int(bx.sy), scratch, w.width);
-    small_gemm(c.j1 - c.j0, w.width, ny_, by.row(c.j0, 0), int(by.sy), scratch, w.width, w.row(c.j0, c.k0 + k), w.width);
+    small_gemm(ny_, w.width, nx_, modes + k * plane, ld, bx.row(0, 0) + w.first, int(bx.sy), scratch,
+               w.width);
+    small_gemm(c.j1 - c.j0, w.width, ny_, by.row(c.j0, 0), int(by.sy), scratch, w.width,
+               w.row(c.j0, c.k0 + k), w.width);
   });
 }
 
@@ -173,7 +176,8 @@ void FastDiagonalPoisson::add(Window& w) {
       const Real coupling = k > c.k0 ? coupling_[static_cast<std::size_t>(k)] : Real(0);
       const Real* source = modes + (k - c.k0) * plane + static_cast<std::ptrdiff_t>(j) * ldx;
       if (k == c.k0) for_each_lane(0, nx_, [&](int i) { row[i] = source[i] * inverse[i]; });
-      else if (k < c.k1) for_each_lane(0, nx_, [&](int i) { row[i] = (source[i] - coupling * below[i]) * inverse[i]; });
+      else if (k < c.k1)
+        for_each_lane(0, nx_, [&](int i) { row[i] = (source[i] - coupling * below[i]) * inverse[i]; });
       else for_each_lane(0, nx_, [&](int i) { row[i] = -coupling * below[i] * inverse[i]; });
     }
     for (int k = nz_ - 1; k >= 0; --k) {
@@ -207,7 +211,8 @@ void FastDiagonalPoisson::solve(Window& w) {
     if (c.k1 < nz_) {
       Real* last = row(c.k1 - 1);
       const Real *inverse = pivot.row(j, c.k1 - 1), *up = above.row(j, c.k1);
-      const Real square_of = coupling_[static_cast<std::size_t>(c.k1)] * coupling_[static_cast<std::size_t>(c.k1)];
+      const Real square_of =
+          coupling_[static_cast<std::size_t>(c.k1)] * coupling_[static_cast<std::size_t>(c.k1)];
       for_each_lane(0, nx_, [&](int i) { last[i] /= Real(1) - square_of * inverse[i] * up[i]; });
     }
     for (int k = c.k1 - 2; k >= c.k0; --k) {

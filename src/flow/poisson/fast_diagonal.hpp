@@ -25,8 +25,8 @@ class FastDiagonalPoisson {
   /// phi = solution of rhs; only inner cells are read and written. The two may be the same field.
   void solve(ConstFieldView rhs, FieldView phi);
 
-  /// A box of cells in which a right-hand side differs from zero and where alone its solution is asked for: costs what
-  /// the box is large, not the grid.
+  /// A box of cells in which a right-hand side differs from zero and where alone its solution is asked for:
+  /// costs what the box is large, not the grid.
   struct Window {
     Range3 cells;
     int width = 0;             ///< of its rows in `values`, whole registers from column `first` on
@@ -34,7 +34,8 @@ class FastDiagonalPoisson {
     std::vector<Real> values;  ///< right-hand side, then solution: [k][j][i - first], 64-byte aligned
     std::vector<Real> modes;   ///< scratch
     Real* row(int j, int k) {
-      return aligned() + (static_cast<std::ptrdiff_t>(k - cells.k0) * (cells.j1 - cells.j0) + j - cells.j0) * width;
+      return aligned() +
+             (static_cast<std::ptrdiff_t>(k - cells.k0) * (cells.j1 - cells.j0) + j - cells.j0) * width;
     }
     Real* aligned();
   };
@@ -63,8 +64,8 @@ class FastDiagonalPoisson {
   bool z_periodic_;
   std::array<Axis1D, 3> axis_;
   Field work_, inverse_pivot_;
-  Field added_;                // modes of what is added
-  Field inverse_pivot_above_;  // the same, eliminated from above
+  Field added_;                 // modes of what is added
+  Field inverse_pivot_above_;   // the same, eliminated from above
   std::vector<Real> coupling_;  // entry k couples cells k-1 and k
 };
 

@@ -9,8 +9,8 @@ namespace ejecta {
 /// Floors that keep still air still: far below any turbulence that matters.
 inline constexpr Real kMinimalK = Real(1e-8), kMinimalSecond = Real(1e-8);
 
-/// nu_t / nu is limited to this (a jet of a sorter has about 1500), so that the ambient's arbitrary epsilon cannot set
-/// the time step.
+/// nu_t / nu is limited to this (a jet of a sorter has about 1500), so that the ambient's arbitrary epsilon
+/// cannot set the time step.
 inline constexpr Real kLargestViscosityRatio = Real(1e4);
 
 /// What the sources of one cell need.

@@ -117,7 +117,8 @@ void transport(const Grid& grid, const ScalarFlux<kSst>& face, const std::array<
             const Real strain2 = strain_squared(v);
             const Real by_volume = dt * inv_volume[i] * inv_jk;
             const Real k_carried = k0 - by_volume * b0[i], s_carried = s0 - by_volume * b1[i];
-            SourcePoint p{k0, s0, k_carried, s_carried, strain2, nut * strain2, nut, Real(0), Real(0), Real(0)};
+            SourcePoint p{k0,  s0,      k_carried, s_carried, strain2, nut * strain2,
+                          nut, Real(0), Real(0),   Real(0)};
             if constexpr (kSst) {
               p.f1 = blending[i];
               p.gradients = product(i);
@@ -222,8 +223,9 @@ void TwoEquation::apply_walls() {
         const Real y_plus = wall_law::kQuarterCmu * std::sqrt(k) * y / nu_;
         const Real on_wall = nu_ * (y_plus / wall_law::u_plus(y_plus, Real(0)) - Real(1));
         at(nut_, a, bb, ghost) = Real(2) * on_wall - at(nut_, a, bb, cell);
-        at(second_, a, bb, cell) = model_ == TwoEquationModel::k_epsilon ? wall_law::dissipation(k, y, nu_)
-                                                                         : wall_law::specific_dissipation(k, y, nu_);
+        at(second_, a, bb, cell) = model_ == TwoEquationModel::k_epsilon
+                                       ? wall_law::dissipation(k, y, nu_)
+                                       : wall_law::specific_dissipation(k, y, nu_);
       }
     });
   }

@@ -3,8 +3,8 @@
 #include <vector>
 
 #include "flow/boundary.hpp"
-#include "flow/piso/increment_smoother.hpp"
 #include "flow/cut_cells.hpp"
+#include "flow/piso/increment_smoother.hpp"
 #include "grid/grid.hpp"
 
 namespace ejecta {
@@ -46,10 +46,10 @@ class TwoEquation {
   Real nu_;
   Field k_, second_, nut_, f1_, k_new_, second_new_, nut_new_, f1_new_;
   std::array<bool, 6> is_wall_{};
-  std::vector<Real> ghost_values_;  // scratch
-  Field solid_distance_;                      // SST: to the nearest body near by, m
+  std::vector<Real> ghost_values_;              // scratch
+  Field solid_distance_;                        // SST: to the nearest body near by, m
   std::vector<std::array<int, 3>> near_cells_;  // where it is not far
-  WallDistance wall_distance_;  // to the nearest wall normal to each axis, m
+  WallDistance wall_distance_;                  // to the nearest wall normal to each axis, m
 };
 
 }  // namespace ejecta

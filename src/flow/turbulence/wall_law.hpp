@@ -4,16 +4,17 @@
 
 #include "base/real.hpp"
 
-/// The law of the wall as pure functions of one point: what a wall does to the flow beside it. u is speed along the
-/// wall relative to it (m/s), y the distance from it (m), nu kinematic viscosity (m2/s).
+/// The law of the wall as pure functions of one point: what a wall does to the flow beside it. u is speed
+/// along the wall relative to it (m/s), y the distance from it (m), nu kinematic viscosity (m2/s).
 namespace ejecta::wall_law {
 
 inline constexpr Real kKappa = Real(0.41), kE = Real(9.8);
 inline constexpr Real kLaminar = Real(11.53);         ///< y+ where u+ = y+ meets the logarithm
 inline constexpr Real kQuarterCmu = Real(0.5477226);  ///< 0.09^(1/4)
 
-/// u+ at y+ of the viscous layer and the logarithm, joined where they meet; `rough` is the sand-grain height over
-/// nu/u_tau: ln(E y+ / (1 + 0.3 k_s+)) (Colebrook 1939, Grigson 1992), so that a smooth wall is k_s+ = 0.
+/// u+ at y+ of the viscous layer and the logarithm, joined where they meet; `rough` is the sand-grain height
+/// over nu/u_tau: ln(E y+ / (1 + 0.3 k_s+)) (Colebrook 1939, Grigson 1992), so that a smooth wall is k_s+ =
+/// 0.
 inline Real u_plus(Real y_plus, Real rough) {
   const Real e = kE / (Real(1) + Real(0.3) * rough);
   const Real log = std::log(std::max(e * y_plus, Real(1.0001))) / kKappa;
@@ -38,7 +39,8 @@ inline Real conductance(Real u, Real y, Real nu, Real k, Real roughness) {
   return std::max({y_star > kLaminar ? by_k : Real(0), u > Real(1e-20) ? by_u : Real(0), nu / y});
 }
 
-/// Dissipation of k beside a wall where production balances it, m2/s3; inside the viscous layer its own value.
+/// Dissipation of k beside a wall where production balances it, m2/s3; inside the viscous layer its own
+/// value.
 inline Real dissipation(Real k, Real y, Real nu) {
   const Real star = kQuarterCmu * std::sqrt(k);
   return std::max(star * star * star / (kKappa * y), Real(2) * nu * k / (y * y));
@@ -46,7 +48,8 @@ inline Real dissipation(Real k, Real y, Real nu) {
 
 /// omega beside a wall (Menter 1994), 1/s.
 inline Real specific_dissipation(Real k, Real y, Real nu) {
-  const Real viscous = Real(6) * nu / (Real(0.075) * y * y), log = kQuarterCmu * std::sqrt(k) / (Real(0.3) * kKappa * y);
+  const Real viscous = Real(6) * nu / (Real(0.075) * y * y),
+             log = kQuarterCmu * std::sqrt(k) / (Real(0.3) * kKappa * y);
   return std::sqrt(viscous * viscous + log * log);
 }
 
