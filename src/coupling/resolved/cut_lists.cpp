@@ -1,0 +1,320 @@
+#include <algorithm>
+#include <cmath>
+
+#include "base/parallel.hpp"
+#include "coupling/resolved/cut_map.hpp"
+
+/// From what each body closes of cells and faces to the lists that the flow reads.
+namespace ejecta {
+namespace {
+
+/// A cell keeps its own momentum when at least this part of it is fluid; less would shorten the stable step.
+constexpr float kOwnFluid = 0.5f;
+/// ... and its centre lies outside by this part of a cell.
+constexpr double kOwnDistance = 0.05;
+/// Depth, in widths of a cell, below which no stencil of the fluid looks.
+constexpr double kDeep = 2.6;
+/// Closed or open up to round-off.
+constexpr float kWhole = 1.0f - 1e-5f, kNothing = 1e-5f;
+
+}  // namespace
+
+/// Faces that several bodies close are one face: closed by their sum, with their mean velocity.
+void CutMap::collect_faces(CutCells& out) const {
+  face_parts_.clear();
+  for (const Record& r : records_) {
+    const Region& region = regions_[static_cast<std::size_t>(r.region)];
+    const int at[3] = {r.i, r.j, r.k};
+    for (int side = 0; side < 6; ++side) {
+      const int d = side / 2, upper = side % 2;
+      const float closed = r.closed[static_cast<std::size_t>(side)];
+      if (closed < kNothing || !grid_.active(d)) continue;
+      // Of the two cells of a face the upper one tells of it, unless it lies beyond the region.
+      int beyond[3] = {r.i, r.j, r.k};
+      beyond[d] += 1;
+      if (upper && beyond[d] < grid_.n(d) && region.holds(beyond[0], beyond[1], beyond[2])) continue;
+      CutFace f;
+      f.d = d;
+      f.i = r.i, f.j = r.j, f.k = r.k;
+      (d == 0 ? f.i : d == 1 ? f.j : f.k) += upper;
+      f.closed = closed;
+      Vec3 x = grid_.centre(r.i, r.j, r.k);
+      x[d] = coordinate(d, at[d] + upper);
+      f.velocity = static_cast<Real>(region.body->velocity_at(x - region.shift)[d]);
+      face_parts_.push_back(
+          {((std::int64_t(f.k) * (grid_.ny() + 1) + f.j) * (grid_.nx() + 1) + f.i) * 3 + d, f});
+    }
+  }
+  if (used_ > 1)
+    std::stable_sort(face_parts_.begin(), face_parts_.end(),
+                     [](const FacePart& a, const FacePart& b) { return a.key < b.key; });
+  for (std::size_t n = 0; n < face_parts_.size();) {
+    CutFace f = face_parts_[n].face;
+    Real sum = f.closed, moved = f.closed * f.velocity;
+    std::size_t m = n + 1;
+    for (; m < face_parts_.size() && face_parts_[m].key == face_parts_[n].key; ++m) {
+      sum += face_parts_[m].face.closed;
+      moved += face_parts_[m].face.closed * face_parts_[m].face.velocity;
+    }
+    f.closed = sum > Real(kWhole) ? Real(1) : sum;
+    f.velocity = moved / sum;
+    out.faces.push_back(f);
+    out.closed[static_cast<std::size_t>(f.d)](f.i, f.j, f.k) = f.closed;
+    n = m;
+  }
+}
+
+void CutMap::collect_cells(CutCells& out) {
+  for (std::size_t n = 0; n < records_.size();) {
+    std::size_t m = n + 1;
+    while (m < records_.size() && records_[m].i == records_[n].i && records_[m].j == records_[n].j &&
+           records_[m].k == records_[n].k)
+      ++m;
+    const std::span<const Record> all(records_.data() + n, m - n);
+    bool open = false;
+    for (std::size_t side = 0; side < 6; ++side) {
+      float closed = 0;
+      for (const Record& r : all) closed += r.closed[side];
+      open = open || (closed < kWhole && grid_.active(int(side / 2)));
+    }
+    const Record& nearest = *std::min_element(
+        all.begin(), all.end(), [](const Record& a, const Record& b) { return a.distance < b.distance; });
+    if (open) add_cut_cell(all, out);
+    else add_ghost(nearest, out);
+    n = m;
+  }
+}
+
+void CutMap::add_cut_cell(std::span<const Record> records, CutCells& out) {
+  const Record& nearest =
+      *std::min_element(records.begin(), records.end(),
+                        [](const Record& a, const Record& b) { return a.distance < b.distance; });
+  const Region& region = regions_[static_cast<std::size_t>(nearest.region)];
+  CutCell c;
+  c.i = nearest.i, c.j = nearest.j, c.k = nearest.k;
+  c.distance = nearest.distance;
+  const Vec3 normal = normal_at(region, c.i, c.j, c.k);
+  for (int d = 0; d < 3; ++d) c.normal[static_cast<std::size_t>(d)] = static_cast<Real>(normal[d]);
+  double solid = 0.0;
+  for (const Record& r : records) solid += 1.0 - part_fluid(r);
+  c.fluid = static_cast<Real>(std::max(1.0 - solid, 1e-4));
+  c.first_wall = static_cast<int>(out.walls.size());
+  const Metrics m[3] = {grid_.metrics(0), grid_.metrics(1), grid_.metrics(2)};
+  const double volume = grid_.volume(c.i, c.j, c.k);
+  const int at[3] = {c.i, c.j, c.k};
+  Vec3 whole{0, 0, 0}, sum{0, 0, 0};  // what closes the open faces; what the bodies say
+  double total = 0.0;
+  for (int d = 0; d < 3; ++d) {
+    if (!grid_.active(d)) continue;
+    const double area = volume / double(m[d].width[at[d]]);
+    int up[3] = {c.i, c.j, c.k};
+    ++up[d];
+    const Field& closed = out.closed[static_cast<std::size_t>(d)];
+    whole[d] = area * double(closed(up[0], up[1], up[2]) - closed(c.i, c.j, c.k));
+  }
+  for (const Record& r : records) {
+    CutWall w;
+    const Region& of = regions_[static_cast<std::size_t>(r.region)];
+    w.cell = static_cast<int>(out.cells.size());
+    w.body = of.index;
+    w.roughness = static_cast<Real>(of.roughness);
+    for (std::size_t d = 0; d < 3; ++d) {
+      const double area = grid_.active(int(d)) ? volume / double(m[d].width[at[d]]) : 0.0;
+      w.area[d] = static_cast<Real>(area * double(r.closed[2 * d + 1] - r.closed[2 * d]));
+    }
+    const Vec3 n = &r == &nearest ? normal : normal_at(of, c.i, c.j, c.k);
+    const Vec3 x = grid_.centre(c.i, c.j, c.k) - of.shift;
+    w.point = x - double(r.distance) * n;
+    const Vec3 v = of.body->velocity_at(w.point);
+    for (int d = 0; d < 3; ++d) w.velocity[static_cast<std::size_t>(d)] = static_cast<Real>(v[d]);
+    const Vec3 area(w.area[0], w.area[1], w.area[2]);
+    sum += area;
+    total += area.norm();
+    out.walls.push_back(w);
+    ++c.walls;
+  }
+  // Where bodies touch their parts overlap: what closes the cell is shared out among them.
+  if (records.size() > 1 && (sum - whole).norm() > 1e-6 * total && total > 0.0)
+    for (int w = c.first_wall; w < c.first_wall + c.walls; ++w) {
+      CutWall& wall = out.walls[static_cast<std::size_t>(w)];
+      const double share = Vec3(wall.area[0], wall.area[1], wall.area[2]).norm() / total;
+      for (int d = 0; d < 3; ++d)
+        wall.area[static_cast<std::size_t>(d)] += static_cast<Real>(share * (whole - sum)[d]);
+    }
+  ghost_region_.push_back(nearest.region);  // of cells first; see find_donors
+  out.cells.push_back(c);
+  out.index(c.i, c.j, c.k) = static_cast<int>(out.cells.size());
+}
+
+void CutMap::add_ghost(const Record& r, CutCells& out) {
+  GhostCell g;
+  g.i = r.i, g.j = r.j, g.k = r.k;
+  g.ratio = r.distance;  // until its donors are known
+  g.donors = r.region;
+  out.ghosts.push_back(g);
+  out.index(r.i, r.j, r.k) = -static_cast<int>(out.ghosts.size());
+}
+
+void CutMap::choose_carriers(CutCells& out) const {
+  const auto keeps = [&](const CutCell& c) {
+    const Vec3 n(c.normal[0], c.normal[1], c.normal[2]);
+    return c.fluid >= Real(kOwnFluid) && c.distance > kOwnDistance * width_along(n, c.i, c.j, c.k);
+  };
+  const std::size_t cut = out.cells.size();
+  for (std::size_t n = 0; n < cut; ++n)
+    if (keeps(out.cells[n])) out.cells[n].carrier = static_cast<int>(n);
+  for (std::size_t n = 0; n < cut; ++n)
+    if (out.cells[n].carrier < 0) out.cells[n].carrier = -2;  // to be given one
+  for (std::size_t n = 0; n < cut; ++n)
+    if (out.cells[n].carrier == -2) out.cells[n].carrier = carrier_of(CutCell(out.cells[n]), out);
+}
+
+/// The neighbour through an open face that lies most along the normal.
+int CutMap::carrier_of(const CutCell& c, CutCells& out) const {
+  double best = 0.02;
+  int at[3] = {-1, -1, -1};
+  for (int side = 0; side < 6; ++side) {
+    const int d = side / 2, up = side % 2;
+    int cell[3] = {c.i, c.j, c.k}, face[3] = {c.i, c.j, c.k};
+    cell[d] += up ? 1 : -1;
+    face[d] += up;
+    if (!grid_.active(d) || cell[d] < 0 || cell[d] >= grid_.n(d)) continue;
+    const double open = 1.0 - double(out.closed[static_cast<std::size_t>(d)](face[0], face[1], face[2]));
+    const int index = out.index(cell[0], cell[1], cell[2]);
+    if (index < 0 || (index > 0 && out.cells[static_cast<std::size_t>(index - 1)].carrier != index - 1))
+      continue;
+    const double along = (up ? 1.0 : -1.0) * double(c.normal[static_cast<std::size_t>(d)]);
+    const double score = open * (1.0 + along);
+    if (score > best) {
+      best = score;
+      std::copy_n(cell, 3, at);
+    }
+  }
+  if (at[0] < 0) return -1;
+  int& index = out.index(at[0], at[1], at[2]);
+  if (index == 0) {  // plain fluid so far
+    CutCell plain;
+    plain.i = at[0], plain.j = at[1], plain.k = at[2];
+    plain.distance = c.distance;
+    plain.normal = c.normal;
+    plain.carrier = static_cast<int>(out.cells.size());
+    for (int r = 0; r < used_; ++r) {
+      const Region& region = regions_[static_cast<std::size_t>(r)];
+      if (!region.holds(at[0], at[1], at[2])) continue;
+      const float distance = region.distance[region.at(at[0], at[1], at[2])];
+      if (plain.distance == c.distance || distance < plain.distance) plain.distance = distance;
+    }
+    out.cells.push_back(plain);
+    index = static_cast<int>(out.cells.size());
+  }
+  return index - 1;
+}
+
+void CutMap::list_members(CutCells& out) const {
+  for (const CutCell& c : out.cells)
+    if (c.carrier >= 0) ++out.cells[static_cast<std::size_t>(c.carrier)].members;
+  int first = 0;
+  for (CutCell& c : out.cells) {
+    c.first_member = first;
+    first += c.members;
+    c.members = 0;
+  }
+  out.members.resize(static_cast<std::size_t>(first));
+  const auto add = [&](std::size_t n) {
+    CutCell& c = out.cells[static_cast<std::size_t>(out.cells[n].carrier)];
+    out.members[static_cast<std::size_t>(c.first_member + c.members++)] = static_cast<int>(n);
+    const CutCell& m = out.cells[n];
+    c.carried +=
+        static_cast<Real>(double(m.fluid) * grid_.volume(m.i, m.j, m.k) / grid_.volume(c.i, c.j, c.k));
+  };
+  for (std::size_t n = 0; n < out.cells.size(); ++n)
+    if (out.cells[n].carrier == static_cast<int>(n)) add(n);
+  for (std::size_t n = 0; n < out.cells.size(); ++n)
+    if (out.cells[n].carrier >= 0 && out.cells[n].carrier != static_cast<int>(n)) add(n);
+}
+
+/// The whole cells of the regions; where those of two bodies overlap the list has both distances.
+void CutMap::list_near(CutCells& out) const {
+  for (int n = 0; n < used_; ++n) {
+    const Region& r = regions_[static_cast<std::size_t>(n)];
+    for (int k = r.low[2]; k < r.low[2] + r.n[2]; ++k)
+      for (int j = r.low[1]; j < r.low[1] + r.n[1]; ++j)
+        for (int i = r.low[0]; i < r.low[0] + r.n[0]; ++i)
+          if (out.index(i, j, k) >= 0)
+            out.near.push_back({i, j, k, static_cast<Real>(r.distance[r.at(i, j, k)])});
+  }
+}
+
+/// Ghosts are the cells inside solids and those whose momentum another carries.
+void CutMap::find_donors(CutCells& out) const {
+  for (std::size_t n = 0; n < ghost_region_.size(); ++n) {
+    const CutCell& c = out.cells[n];
+    if (c.carrier == static_cast<int>(n)) continue;
+    GhostCell g;
+    g.i = c.i, g.j = c.j, g.k = c.k;
+    g.ratio = c.distance;
+    g.donors = ghost_region_[n];
+    out.ghosts.push_back(g);
+  }
+  for_each_index(static_cast<int>(out.ghosts.size()), [&](int n) {
+    GhostCell& g = out.ghosts[static_cast<std::size_t>(n)];
+    const Region& r = regions_[static_cast<std::size_t>(g.donors)];
+    const double distance = g.ratio;
+    const Vec3 x = grid_.centre(g.i, g.j, g.k), v = r.body->velocity_at(x - r.shift);
+    for (int d = 0; d < 3; ++d) g.solid[static_cast<std::size_t>(d)] = static_cast<Real>(v[d]);
+    g.donors = 0;
+    g.ratio = 0;
+    double deepest = 0.0;
+    const int at[3] = {g.i, g.j, g.k};
+    for (int d = 0; d < 3; ++d)
+      if (grid_.active(d)) deepest = std::max(deepest, grid_.axis(d).width[static_cast<std::size_t>(at[d])]);
+    if (distance < -kDeep * deepest) return;
+    const Vec3 normal = normal_at(r, g.i, g.j, g.k);
+    const double across = width_along(normal, g.i, g.j, g.k);
+    if (!(across > 0.0)) return;
+    for (int d = 0; d < 3; ++d) g.normal[static_cast<std::size_t>(d)] = static_cast<Real>(normal[d]);
+    for (double beyond = 1.0; beyond < 2.6 && g.donors == 0; beyond += 0.5) {
+      const Vec3 image = x + (beyond * across - distance) * normal;
+      int low[3] = {g.i, g.j, g.k};
+      double part[3] = {0, 0, 0};
+      for (int d = 0; d < 3; ++d) {
+        if (!grid_.active(d)) continue;
+        const Axis& axis = grid_.axis(d);
+        int cell = axis.cell_at(image[d]);
+        if (image[d] < axis.centre[static_cast<std::size_t>(cell)]) --cell;
+        low[d] = std::clamp(cell, 0, axis.n - 2);
+        const std::size_t l = static_cast<std::size_t>(low[d]);
+        part[d] = std::clamp((image[d] - axis.centre[l]) / (axis.centre[l + 1] - axis.centre[l]), 0.0, 1.0);
+      }
+      double sum = 0.0, from = 0.0;
+      int donors = 0;
+      for (int corner = 0; corner < 8; ++corner) {
+        int cell[3];
+        double weight = 1.0;
+        bool there = true;
+        for (int d = 0; d < 3; ++d) {
+          const int up = (corner >> d) & 1;
+          cell[d] = low[d] + up;
+          there = there && (grid_.active(d) || !up);
+          if (grid_.active(d)) weight *= up ? part[d] : 1.0 - part[d];
+        }
+        if (!there || weight < 1e-3 || !r.holds(cell[0], cell[1], cell[2])) continue;
+        const int index = out.index(cell[0], cell[1], cell[2]);
+        if (index < 0 || (index > 0 && out.cells[static_cast<std::size_t>(index - 1)].carrier != index - 1))
+          continue;
+        const std::size_t slot = static_cast<std::size_t>(donors++);
+        g.donor[slot] = &out.closed[0](cell[0], cell[1], cell[2]) - &out.closed[0](g.i, g.j, g.k);
+        g.weight[slot] = static_cast<Real>(weight);
+        sum += weight;
+        from += weight * double(r.distance[r.at(cell[0], cell[1], cell[2])]);
+      }
+      if (sum < 0.2 || !(from / sum > 0.2 * across)) continue;
+      g.donors = donors;
+      g.image = static_cast<Real>(from / sum);
+      g.ratio = static_cast<Real>(std::max(distance / (from / sum), -2.0));
+      for (int m = 0; m < donors; ++m) g.weight[static_cast<std::size_t>(m)] /= static_cast<Real>(sum);
+    }
+  });
+}
+
+}  // namespace ejecta
