@@ -92,12 +92,14 @@ struct Bodies {
   }
 };
 
+/// Single precision in a box that fixes no pressure: round-off of the pressure equation.
 void expect_uniform(const Bodies& b, const Vec3& u, int step) {
+  const double part = !kSingle ? 1e-9 : b.flow.boundaries().open() ? 1e-4 : 1e-3;
   for (int c = 0; c < 3; ++c)
     for (int k = 0; k < b.grid.nz(); ++k)
       for (int j = 0; j < b.grid.ny(); ++j)
         for (int i = 0; i < b.grid.nx(); ++i)
-          ASSERT_NEAR(b.flow.velocity_field(c)(i, j, k), u[c], 1e-4 * u.norm())
+          ASSERT_NEAR(b.flow.velocity_field(c)(i, j, k), u[c], part * u.norm())
               << c << " at " << i << " " << j << " " << k << " in step " << step;
 }
 
@@ -147,7 +149,8 @@ TEST(BodiesInLiquid, MomentumOfAPeriodicBoxAndItsBodiesIsKept) {
     for (int n = 0; n < 25; ++n) b.step(b.flow.stable_dt(0.8));
     const double moved = b.flow.ledger().impulse_on_solids.norm();
     EXPECT_GT(moved, 0.01 * start.norm()) << "the bodies must have done something";
-    EXPECT_LT(b.lost(start), (kSingle ? 1e-4 : 1e-8) * moved);
+    // The two ends of the box see the same face cut by two images of a body: the same up to single precision.
+    EXPECT_LT(b.lost(start), (kSingle ? 1e-4 : 1e-7) * moved);
     EXPECT_LT(b.flow.largest_divergence(b.mask.cut), 2e-3);
   }
 }

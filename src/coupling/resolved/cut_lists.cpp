@@ -12,6 +12,8 @@ namespace {
 constexpr float kOwnFluid = 0.5f;
 /// ... and its centre lies outside by this part of a cell.
 constexpr double kOwnDistance = 0.05;
+/// Open part of a face that counts as a way out for fluid between bodies.
+constexpr double kPassage = 0.02;
 /// Depth, in widths of a cell, below which no stencil of the fluid looks.
 constexpr double kDeep = 2.6;
 /// Closed or open up to round-off.
@@ -155,10 +157,28 @@ void CutMap::add_ghost(const Record& r, CutCells& out) {
   out.index(r.i, r.j, r.k) = -static_cast<int>(out.ghosts.size());
 }
 
+/// visit(index of the cell beyond as in CutCells::index, side, that cell, open part of the face) for the
+/// faces of a cell within the box and periodic ones of the box.
+template <class Visit>
+void CutMap::for_each_neighbour(const CutCell& c, const CutCells& out, const Visit& visit) const {
+  for (int side = 0; side < 6; ++side) {
+    const int d = side / 2, up = side % 2;
+    int cell[3] = {c.i, c.j, c.k}, face[3] = {c.i, c.j, c.k};
+    cell[d] += up ? 1 : -1;
+    face[d] += up;
+    if (!grid_.active(d)) continue;
+    if (periodic_[static_cast<std::size_t>(d)]) cell[d] = (cell[d] + grid_.n(d)) % grid_.n(d);
+    if (cell[d] < 0 || cell[d] >= grid_.n(d)) continue;
+    const double open = 1.0 - double(out.closed[static_cast<std::size_t>(d)](face[0], face[1], face[2]));
+    visit(out.index(cell[0], cell[1], cell[2]), side, cell, open);
+  }
+}
+
 void CutMap::choose_carriers(CutCells& out) const {
   const auto keeps = [&](const CutCell& c) {
     const Vec3 n(c.normal[0], c.normal[1], c.normal[2]);
-    return c.fluid >= Real(kOwnFluid) && c.distance > kOwnDistance * width_along(n, c.i, c.j, c.k);
+    return !c.locked && c.fluid >= Real(kOwnFluid) &&
+           c.distance > kOwnDistance * width_along(n, c.i, c.j, c.k);
   };
   const std::size_t cut = out.cells.size();
   for (std::size_t n = 0; n < cut; ++n)
@@ -166,7 +186,71 @@ void CutMap::choose_carriers(CutCells& out) const {
   for (std::size_t n = 0; n < cut; ++n)
     if (out.cells[n].carrier < 0) out.cells[n].carrier = -2;  // to be given one
   for (std::size_t n = 0; n < cut; ++n)
-    if (out.cells[n].carrier == -2) out.cells[n].carrier = carrier_of(CutCell(out.cells[n]), out);
+    if (out.cells[n].carrier == -2)
+      out.cells[n].carrier = out.cells[n].locked ? -1 : carrier_of(CutCell(out.cells[n]), out);
+  // Small cells that have none beside them are carried by what carries a neighbour.
+  for (bool more = true; more;) {
+    more = false;
+    for (std::size_t n = 0; n < cut; ++n) {
+      if (out.cells[n].carrier >= 0 || out.cells[n].locked) continue;
+      double widest = 0.0;
+      int carrier = -1;
+      for_each_neighbour(out.cells[n], out, [&](int index, int, const int*, double open) {
+        if (index <= 0 || out.cells[static_cast<std::size_t>(index - 1)].carrier < 0 || open <= widest)
+          return;
+        widest = open;
+        carrier = out.cells[static_cast<std::size_t>(index - 1)].carrier;
+      });
+      if (carrier < 0) continue;
+      out.cells[n].carrier = carrier;
+      more = true;
+    }
+  }
+}
+
+/// Fluid that bodies lock in between them moves with them and has no pressure: its cells are told apart, and
+/// what is left open of the faces around them is closed.
+void CutMap::lock_in(CutCells& out) const {
+  for (CutCell& c : out.cells) c.locked = true;
+  for (bool more = true; more;) {
+    more = false;
+    for (CutCell& c : out.cells) {
+      if (!c.locked) continue;
+      for_each_neighbour(c, out, [&](int index, int, const int*, double open) {
+        if (open < kPassage || index < 0 ||
+            (index > 0 && out.cells[static_cast<std::size_t>(index - 1)].locked))
+          return;
+        c.locked = false;
+      });
+      more = more || !c.locked;
+    }
+  }
+  for (CutFace& f : out.faces) {
+    if (f.closed >= Real(1)) continue;
+    int low[3] = {f.i, f.j, f.k}, high[3] = {f.i, f.j, f.k};
+    --low[f.d];
+    if (periodic_[static_cast<std::size_t>(f.d)]) {
+      low[f.d] = (low[f.d] + grid_.n(f.d)) % grid_.n(f.d);
+      high[f.d] %= grid_.n(f.d);
+    }
+    if (low[f.d] < 0 || high[f.d] >= grid_.n(f.d)) continue;
+    const int below = out.index(low[0], low[1], low[2]), above = out.index(high[0], high[1], high[2]);
+    if (below <= 0 || above <= 0) continue;
+    const CutCell &b = out.cells[static_cast<std::size_t>(below - 1)],
+                  &a = out.cells[static_cast<std::size_t>(above - 1)];
+    if (a.locked == b.locked) continue;
+    const auto close = [&](const CutCell& c, double sign) {
+      const int at[3] = {c.i, c.j, c.k};
+      const double area =
+          grid_.volume(c.i, c.j, c.k) / grid_.axis(f.d).width[static_cast<std::size_t>(at[f.d])];
+      out.walls[static_cast<std::size_t>(c.first_wall)].area[static_cast<std::size_t>(f.d)] +=
+          static_cast<Real>(sign * area * (1.0 - double(f.closed)));
+    };
+    close(b, 1.0);
+    close(a, -1.0);
+    f.closed = 1;
+    out.closed[static_cast<std::size_t>(f.d)](f.i, f.j, f.k) = 1;
+  }
 }
 
 /// The neighbour through an open face that lies most along the normal.

@@ -38,7 +38,7 @@ void measure_row(int n, double band, const Position& position, const Measure& me
 template <class F>
 double root(double a, double b, const F& f) {
   double x0 = 0.0, x1 = 1.0, x = 0.5;
-  for (int n = 0; n < 8; ++n) {
+  for (int n = 0; n < 30; ++n) {
     x = (x0 * b - x1 * a) / (b - a);
     const double y = f(x);
     if (std::abs(y) < 1e-4 * (std::abs(a) + std::abs(b)) || x1 - x0 < 1e-4) break;
@@ -130,8 +130,11 @@ void CutMap::measure(Region& r) {
       const float* a = r.node.data() + static_cast<std::size_t>(k * ny + j) * nx;
       const float *b = a + nx, *c = a + static_cast<std::ptrdiff_t>(nx) * ny, *d = c + nx;
       float* out = r.distance.data() + r.at(r.low[0], r.low[1] + j, r.low[2] + k);
-      for (int i = 0; i < r.n[0]; ++i)
+      for (int i = 0; i < r.n[0]; ++i) {
         out[i] = 0.125f * (a[i] + a[i + 1] + b[i] + b[i + 1] + c[i] + c[i + 1] + d[i] + d[i + 1]);
+        if (std::abs(out[i]) < 1.5 * widest)
+          out[i] = static_cast<float>(distance(grid_.centre(r.low[0] + i, r.low[1] + j, r.low[2] + k)));
+      }
     }
   });
 }
@@ -315,6 +318,7 @@ void CutMap::map(std::span<const Body> bodies, std::span<const double> roughness
     });
   collect_faces(out);
   collect_cells(out);
+  lock_in(out);
   choose_carriers(out);
   list_members(out);
   find_donors(out);

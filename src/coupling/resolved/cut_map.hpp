@@ -29,7 +29,7 @@ class CutMap {
     std::array<int, 3> low{}, n{};
     std::vector<float>
         node;  ///< distance of the corners of its cells; far from the surface only its sign is right, m
-    std::vector<float> distance;  ///< of the centres, the mean of their corners, m
+    std::vector<float> distance;  ///< of the centres; away from the surface the mean of their corners, m
     std::size_t at(int i, int j, int k) const {
       return static_cast<std::size_t>((k - low[2]) * n[1] + j - low[1]) * static_cast<std::size_t>(n[0]) +
              static_cast<std::size_t>(i - low[0]);
@@ -55,6 +55,9 @@ class CutMap {
   void collect_cells(CutCells& out);
   void add_cut_cell(std::span<const Record> records, CutCells& out);
   void add_ghost(const Record& r, CutCells& out);
+  template <class Visit>
+  void for_each_neighbour(const CutCell& c, const CutCells& out, const Visit& visit) const;
+  void lock_in(CutCells& out) const;
   void choose_carriers(CutCells& out) const;
   int carrier_of(const CutCell& c, CutCells& out) const;
   void list_members(CutCells& out) const;

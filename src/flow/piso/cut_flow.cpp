@@ -18,6 +18,8 @@ using Triple = std::array<Real, 3>;
 /// thinner than the cells that should show it: the stencils then see the flow slip, the wall's friction
 /// apart.
 constexpr Real kResolvedLayer = Real(100);
+/// Cells with less fluid than this part take the pressure of their carrier: round-off moves theirs.
+constexpr Real kKeepsPressure = Real(0.02);
 /// Nearest a centre counts to its wall, parts of a cell: friction there is implicit anyway.
 constexpr Real kNearest = Real(0.05);
 
@@ -209,7 +211,8 @@ void CutFlow::extend_pressure(const CutCells& cut, FieldView p) {
   const auto value = [&](const CutCell& c) {
     const CutCell& carrier = cut.cells[static_cast<std::size_t>(c.carrier)];
     const Cell from{carrier.i, carrier.j, carrier.k}, to{c.i, c.j, c.k};
-    Real sum = p(from[0], from[1], from[2]);
+    const Real here = p(from[0], from[1], from[2]);
+    Real sum = here;
     for (int d = 0; d < 3; ++d) {
       const std::size_t s = static_cast<std::size_t>(d);
       if (from[s] == to[s]) continue;
@@ -220,7 +223,7 @@ void CutFlow::extend_pressure(const CutCells& cut, FieldView p) {
       face[s] += away > 0;
       if (cut.closed[s](face[0], face[1], face[2]) >= Real(1) || face[s] <= 0 || face[s] >= grid_.n(d))
         continue;
-      const Real slope = (p(beyond[0], beyond[1], beyond[2]) - sum) * m.inv_distance[face[s]];
+      const Real slope = (p(beyond[0], beyond[1], beyond[2]) - here) * m.inv_distance[face[s]];
       sum -= slope * std::abs(m.centre[from[s]] - m.centre[to[s]]);
     }
     return sum;
@@ -228,7 +231,8 @@ void CutFlow::extend_pressure(const CutCells& cut, FieldView p) {
   scalars_.resize(cut.cells.size());
   for_each_index(static_cast<int>(cut.cells.size()), [&](int n) {
     const CutCell& c = cut.cells[static_cast<std::size_t>(n)];
-    scalars_[static_cast<std::size_t>(n)] = c.carrier >= 0 ? value(c) : p(c.i, c.j, c.k);
+    scalars_[static_cast<std::size_t>(n)] =
+        c.carrier >= 0 && c.fluid < kKeepsPressure ? value(c) : p(c.i, c.j, c.k);
   });
   for_each_index(static_cast<int>(cut.cells.size()), [&](int n) {
     const CutCell& c = cut.cells[static_cast<std::size_t>(n)];

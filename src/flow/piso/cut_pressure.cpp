@@ -124,6 +124,8 @@ void CutPressure::invert(const std::vector<Real>& r, std::vector<Real>& out) {
 void CutPressure::solve(const CutCells& cut, FieldView phi, double tolerance) {
   for (const GhostCell& g : cut.ghosts)
     if (cut.index(g.i, g.j, g.k) < 0) phi(g.i, g.j, g.k) = 0;  // but for round-off it is
+  for (const CutCell& c : cut.cells)
+    if (c.locked) phi(c.i, c.j, c.k) = 0;
   iterations_ = 0;
   if (couplings_.empty()) return whole_.solve(phi, phi);
   const bool windows = whole_.has_windows();

@@ -19,7 +19,7 @@ namespace {
 constexpr double kStageWeight = 0.5;
 /// What may pass closed faces after a correction, of what would without it. Pressure is incremental: what is
 /// left over is met again in the next correction. With 0.01 the force on a fixed cube is the same to 2e-5.
-constexpr double kClosedTolerance = 0.1;
+constexpr double kClosedTolerance = 0.03;
 /// Time of the pressure's filter (projection.hpp), parts of the step at Courant number 1: takes a quarter of
 /// what alternates in each correction and is the same for all Courant numbers from this one on.
 constexpr double kFilter = 0.25;
