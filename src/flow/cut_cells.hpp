@@ -17,7 +17,7 @@ struct CutCell {
   Real fluid = 1;                ///< fluid part of its own volume, 0..1
   Real distance = 0;             ///< of its centre from the nearest surface, m; > 0 in the fluid
   std::array<Real, 3> normal{};  ///< of that surface, into the fluid
-  bool locked = false;  ///< bodies lock its fluid in: it has neither momentum nor pressure
+  bool locked = false;           ///< bodies lock its fluid in: it has neither momentum nor pressure
   int carrier = -1;  ///< index of the cell that carries its momentum: itself, or of a small cell a
                      ///< neighbour; -1: none does (fluid locked in)
   Real carried = 0;  ///< volume of fluid whose momentum it carries over that of the cell

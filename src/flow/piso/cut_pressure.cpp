@@ -140,12 +140,14 @@ void CutPressure::solve(const CutCells& cut, FieldView phi, double tolerance) {
   through_closed(phi_, residual_);
   std::fill(source_.begin(), source_.end(), Real(0));
   // r = C phi, z = L^-1 r; steps along z, on which (L - C) is negative definite
-  double before = 0.0, first = 0.0;
+  double before = 0.0, first = 0.0, least = 0.0;
   for (int n = 0; n < kMostIterations; ++n) {
     invert(residual_, z_);
     const double now = -product(residual_, z_);
     if (n == 0) first = now;
-    if (!(now > tolerance * tolerance * first) || !(now > 0.0)) break;
+    least = n == 0 ? now : std::min(least, now);
+    // Where nothing but round-off is left the residual grows again.
+    if (!(now > tolerance * tolerance * first) || !(now > 0.0) || now > 4.0 * least) break;
     ++iterations_;
     const Real beta = n == 0 ? Real(0) : static_cast<Real>(now / before);
     for (std::size_t e = 0; e < z_.size(); ++e) {
