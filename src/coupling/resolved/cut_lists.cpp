@@ -195,7 +195,9 @@ void CutMap::choose_carriers(CutCells& out) const {
       if (out.cells[n].carrier >= 0 || out.cells[n].locked) continue;
       double widest = 0.0;
       int carrier = -1;
-      for_each_neighbour(out.cells[n], out, [&](int index, int, const int*, double open) {
+      for_each_neighbour(out.cells[n], out, [&](int index, int side, const int* cell, double open) {
+        const int at[3] = {out.cells[n].i, out.cells[n].j, out.cells[n].k};
+        if (std::abs(cell[side / 2] - at[side / 2]) > 1) return;  // at the other end of a periodic box
         if (index <= 0 || out.cells[static_cast<std::size_t>(index - 1)].carrier < 0 || open <= widest)
           return;
         widest = open;
@@ -246,8 +248,9 @@ void CutMap::lock_in(CutCells& out) const {
       out.walls[static_cast<std::size_t>(c.first_wall)].area[static_cast<std::size_t>(f.d)] +=
           static_cast<Real>(sign * area * (1.0 - double(f.closed)));
     };
-    close(b, 1.0);
-    close(a, -1.0);
+    const int along[3] = {f.i, f.j, f.k};  // a periodic face of the box stands twice, once for either cell
+    if (along[f.d] > 0) close(b, 1.0);
+    if (along[f.d] < grid_.n(f.d)) close(a, -1.0);
     f.closed = 1;
     out.closed[static_cast<std::size_t>(f.d)](f.i, f.j, f.k) = 1;
   }
