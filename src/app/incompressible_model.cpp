@@ -137,7 +137,6 @@ class IncompressibleModel : public FlowModel {
         {"flow.boundaries", "states of the boundaries into ghost cells", t.boundaries, 0},
         {"flow.momentum_predictor",
          "u* = u + dt [-div(q u) + div(2 nu_eff S) - grad p]  (Eq. 2), two Heun stages", t.momentum, 0},
-        {"flow.force_solids", "u* = u_solid + (d/h) (u_image - u_solid) inside solids", t.forcing, 0},
         {"flow.face_velocities", "q* = mean(u*) + dt (mean(grad p) - grad p), r = div q* / dt", t.faces, 0},
         {"flow.pressure", "div grad phi = r, exact by fast diagonalisation", t.pressure, 0},
         {"flow.correction", "q -= dt grad phi, u -= dt grad phi, p += phi", t.correction, 0},

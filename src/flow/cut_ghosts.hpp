@@ -14,8 +14,7 @@ inline Real from_donors(const GhostCell& g, ConstFieldView f) {
 }
 
 /// Ghosts, those that `which` chooses, take a scalar from their donors: no gradient at the wall. `scratch` is
-/// kept between calls. Small cells have a pressure of their own: only ghosts in solids and fluid locked in
-/// may take one.
+/// kept between calls.
 template <class Which>
 void extend_to_ghosts(const CutCells& cut, FieldView f, std::vector<Real>& scratch, const Which& which) {
   scratch.resize(cut.ghosts.size());

@@ -184,10 +184,8 @@ void CutMap::choose_carriers(CutCells& out) const {
   for (std::size_t n = 0; n < cut; ++n)
     if (keeps(out.cells[n])) out.cells[n].carrier = static_cast<int>(n);
   for (std::size_t n = 0; n < cut; ++n)
-    if (out.cells[n].carrier < 0) out.cells[n].carrier = -2;  // to be given one
-  for (std::size_t n = 0; n < cut; ++n)
-    if (out.cells[n].carrier == -2)
-      out.cells[n].carrier = out.cells[n].locked ? -1 : carrier_of(CutCell(out.cells[n]), out);
+    if (out.cells[n].carrier < 0 && !out.cells[n].locked)
+      out.cells[n].carrier = carrier_of(CutCell(out.cells[n]), out);
   // Small cells that have none beside them are carried by what carries a neighbour.
   for (bool more = true; more;) {
     more = false;

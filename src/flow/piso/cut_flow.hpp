@@ -41,9 +41,8 @@ class CutFlow {
   Vec3 predict(CutCells& cut, const MomentumTerms& terms, const WallTurbulence& turbulence, double weight);
   /// Ghosts take what the stencils should see.
   void extend(const CutCells& cut, const std::array<FieldView, 3>& u, const WallTurbulence& turbulence);
-  /// Small cells take the pressure of their carrier, extended by the gradient beyond them, and cells in
-  /// solids that of their donors. What the corrections gave small cells would add up from step to step: their
-  /// velocity, being another's, never answers it.
+  /// The smallest cells take the pressure of their carrier, extended by the gradient beyond them, and cells
+  /// in solids that of their donors: round-off would add up in them from step to step.
   void extend_pressure(const CutCells& cut, FieldView p);
   /// q on the faces of cut cells, of what flows through their open parts; closed ones move with the solid.
   void face_velocities(const CutCells& cut, const std::array<ConstFieldView, 3>& u_star, ConstFieldView p,

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "flow/stencil.hpp"
+#include "flow/cut_geometry.hpp"
 
 namespace ejecta {
 namespace {
@@ -21,7 +21,6 @@ CutPressure::CutPressure(const Grid& grid, FastDiagonalPoisson& whole,
       sources_(grid.make_field()) {}
 
 void CutPressure::begin(const CutCells& cut) {
-  const Metrics m[3] = {grid_.metrics(0), grid_.metrics(1), grid_.metrics(2)};
   entries_.clear();
   couplings_.clear();
   for (const CutCell& c : cut.cells) entries_.push_back({c.i, c.j, c.k});
@@ -35,10 +34,8 @@ void CutPressure::begin(const CutCells& cut) {
   for (const CutFace& f : cut.faces) {
     const int at[3] = {f.i, f.j, f.k};
     const int n = grid_.n(f.d);
-    const Real area = f.d == 0   ? face_area<0>(m, f.i, f.j, f.k)
-                      : f.d == 1 ? face_area<1>(m, f.i, f.j, f.k)
-                                 : face_area<2>(m, f.i, f.j, f.k);
-    Coupling c{-1, -1, f.closed * area * m[f.d].inv_distance[at[f.d]]};
+    const Real area = face_area_of(grid_, f.d, {f.i, f.j, f.k});
+    Coupling c{-1, -1, f.closed * area * grid_.metrics(f.d).inv_distance[at[f.d]]};
     int below[3] = {f.i, f.j, f.k};
     --below[f.d];
     if (at[f.d] == 0 || at[f.d] == n) {

@@ -29,8 +29,7 @@ struct IncompressibleSetup {
 
 /// Seconds spent in each operator since construction.
 struct FlowTimes {
-  double boundaries = 0, momentum = 0, forcing = 0, faces = 0, pressure = 0, correction = 0, turbulence = 0,
-         ledger = 0;
+  double boundaries = 0, momentum = 0, faces = 0, pressure = 0, correction = 0, turbulence = 0, ledger = 0;
 };
 
 /// Totals of the fluid in the box, times density: kg m/s, and what crossed its boundaries, for the ledger.
