@@ -14,12 +14,6 @@ namespace {
 using Cell = std::array<int, 3>;
 using Triple = std::array<Real, 3>;
 
-/// Cell Reynolds number (speed along the wall times distance over viscosity) from which on a laminar layer is
-/// thinner than the cells that should show it: the stencils then see the flow slip, the wall's friction
-/// apart.
-constexpr Real kResolvedLayer = Real(100);
-/// Cells with less fluid than this part take the pressure of their carrier: round-off moves theirs.
-constexpr Real kKeepsPressure = Real(0.02);
 /// Nearest a centre counts to its wall, parts of a cell: friction there is implicit anyway.
 constexpr Real kNearest = Real(0.05);
 
@@ -189,14 +183,11 @@ void CutFlow::extend(const CutCells& cut, const std::array<FieldView, 3>& u,
     const Real through = dot(w, g.normal);
     Triple along;
     for (std::size_t e = 0; e < 3; ++e) along[e] = w[e] - through * g.normal[e];
-    const Real speed = norm(along);
-    Real linear;  // 1: the profile from the image to the wall is linear; 0: the flow slips
+    Real linear = 1;  // 1: the profile from the image to the wall is linear; 0: the flow slips
     if (turbulence.present()) {
       const Real k = std::max(from(turbulence.k), Real(0)), eddy = from(turbulence.eddy_viscosity);
-      linear = std::min(wall_law::conductance(speed, g.image, nu_, k, 0) * g.image / (nu_ + eddy), Real(1));
-    } else {
-      const Real layer = speed * g.image / nu_ / kResolvedLayer;
-      linear = Real(1) / (Real(1) + layer * layer);
+      linear =
+          std::min(wall_law::conductance(norm(along), g.image, nu_, k, 0) * g.image / (nu_ + eddy), linear);
     }
     const Real tangential = Real(1) - linear * (Real(1) - g.ratio);
     for (std::size_t e = 0; e < 3; ++e) value[e] += g.ratio * through * g.normal[e] + tangential * along[e];
@@ -207,8 +198,14 @@ void CutFlow::extend(const CutCells& cut, const std::array<FieldView, 3>& u,
   });
 }
 
-void CutFlow::extend_pressure(const CutCells& cut, FieldView p) {
-  const auto value = [&](const CutCell& c) {
+void CutFlow::extend_to_small(const CutCells& cut, FieldView p) const {
+  const auto own = [&](const Cell& at) {
+    const int index = cut.index(at[0], at[1], at[2]);
+    return index == 0 || (index > 0 && cut.cells[static_cast<std::size_t>(index - 1)].carrier == index - 1);
+  };
+  for_each_index(static_cast<int>(cut.cells.size()), [&](int n) {
+    const CutCell& c = cut.cells[static_cast<std::size_t>(n)];
+    if (c.carrier < 0 || c.carrier == n) return;
     const CutCell& carrier = cut.cells[static_cast<std::size_t>(c.carrier)];
     const Cell from{carrier.i, carrier.j, carrier.k}, to{c.i, c.j, c.k};
     const Real here = p(from[0], from[1], from[2]);
@@ -221,23 +218,27 @@ void CutFlow::extend_pressure(const CutCells& cut, FieldView p) {
       Cell beyond = from, face = from;
       beyond[s] += away;
       face[s] += away > 0;
-      if (cut.closed[s](face[0], face[1], face[2]) >= Real(1) || face[s] <= 0 || face[s] >= grid_.n(d))
+      if (face[s] <= 0 || face[s] >= grid_.n(d) || cut.closed[s](face[0], face[1], face[2]) >= Real(1) ||
+          !own(beyond))
         continue;
       const Real slope = (p(beyond[0], beyond[1], beyond[2]) - here) * m.inv_distance[face[s]];
       sum -= slope * std::abs(m.centre[from[s]] - m.centre[to[s]]);
     }
-    return sum;
-  };
-  scalars_.resize(cut.cells.size());
-  for_each_index(static_cast<int>(cut.cells.size()), [&](int n) {
-    const CutCell& c = cut.cells[static_cast<std::size_t>(n)];
-    scalars_[static_cast<std::size_t>(n)] =
-        c.carrier >= 0 && c.fluid < kKeepsPressure ? value(c) : p(c.i, c.j, c.k);
+    p(c.i, c.j, c.k) = sum;
   });
-  for_each_index(static_cast<int>(cut.cells.size()), [&](int n) {
-    const CutCell& c = cut.cells[static_cast<std::size_t>(n)];
-    p(c.i, c.j, c.k) = scalars_[static_cast<std::size_t>(n)];
-  });
+}
+
+void CutFlow::fold(const CutCells& cut, FieldView f) const {
+  for (std::size_t n = 0; n < cut.cells.size(); ++n) {
+    const CutCell& c = cut.cells[n];
+    if (c.carrier < 0 || c.carrier == static_cast<int>(n)) continue;
+    const CutCell& carrier = cut.cells[static_cast<std::size_t>(c.carrier)];
+    f(carrier.i, carrier.j, carrier.k) += f(c.i, c.j, c.k);
+    f(c.i, c.j, c.k) = 0;
+  }
+}
+
+void CutFlow::extend_to_solids(const CutCells& cut, FieldView p) {
   extend_to_ghosts(cut, p, scalars_, [&cut](const GhostCell& g) {
     const int index = cut.index(g.i, g.j, g.k);
     return index < 0 || cut.cells[static_cast<std::size_t>(index - 1)].carrier < 0;

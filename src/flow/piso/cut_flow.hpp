@@ -41,9 +41,13 @@ class CutFlow {
   Vec3 predict(CutCells& cut, const MomentumTerms& terms, const WallTurbulence& turbulence, double weight);
   /// Ghosts take what the stencils should see.
   void extend(const CutCells& cut, const std::array<FieldView, 3>& u, const WallTurbulence& turbulence);
-  /// The smallest cells take the pressure of their carrier, extended by the gradient beyond them, and cells
-  /// in solids that of their donors: round-off would add up in them from step to step.
-  void extend_pressure(const CutCells& cut, FieldView p);
+  /// Small cells have no pressure of their own: they take that of their carrier, extended by the gradient
+  /// beyond it.
+  void extend_to_small(const CutCells& cut, FieldView p) const;
+  /// What small cells hold of a sum over cells goes to their carriers.
+  void fold(const CutCells& cut, FieldView f) const;
+  /// Cells in solids take the pressure of their donors: round-off would add up in them from step to step.
+  void extend_to_solids(const CutCells& cut, FieldView p);
   /// q on the faces of cut cells, of what flows through their open parts; closed ones move with the solid.
   void face_velocities(const CutCells& cut, const std::array<ConstFieldView, 3>& u_star, ConstFieldView p,
                        Real filter_time, const std::array<FieldView, 3>& q);
@@ -75,7 +79,7 @@ class CutFlow {
   std::vector<std::array<int, 3>> touched_;           // cells whose carried_ is not 1, rows in turn
   std::vector<std::array<Real, 3>> gradient_, kept_;  // of cut.cells
   std::vector<std::array<Real, 3>> values_;           // scratch of extend
-  std::vector<Real> scalars_;                         // scratch of extend_pressure
+  std::vector<Real> scalars_;                         // scratch of extend_to_solids
   std::vector<Real> open_velocity_;                   // of cut.faces while they are closed
   std::vector<Vec3> sums_;                            // scratch
 };

@@ -20,40 +20,83 @@ CutPressure::CutPressure(const Grid& grid, FastDiagonalPoisson& whole,
       work_(grid.make_field()),
       sources_(grid.make_field()) {}
 
+void CutPressure::add_entry(int i, int j, int k) {
+  const int n = static_cast<int>(entries_.size());
+  entry_(i, j, k) = n;
+  entries_.push_back({i, j, k, n});
+}
+
+void CutPressure::add_coupling(int d, std::array<int, 3> face, Real closed) {
+  const std::size_t s = static_cast<std::size_t>(d);
+  const int n = grid_.n(d);
+  std::array<int, 3> low = face, high = face;
+  --low[s];
+  Real strength = face_area_of(grid_, d, face) * grid_.metrics(d).inv_distance[face[s]];
+  const bool first = face[s] == 0, last = face[s] == n;
+  bool has_low = true, has_high = true;
+  if (first || last) {
+    switch (boundary_[2 * s + last]) {
+      case PoissonBoundary::neumann:
+        return;
+      case PoissonBoundary::periodic:
+        if (last) return;  // stands twice
+        low[s] = n - 1;
+        break;
+      case PoissonBoundary::dirichlet:
+        strength *= Real(2);
+        (first ? has_low : has_high) = false;
+    }
+  }
+  const auto entry = [&](bool there, const std::array<int, 3>& at) {
+    if (!there) return -1;
+    if (entry_(at[0], at[1], at[2]) < 0) add_entry(at[0], at[1], at[2]);
+    return entry_(at[0], at[1], at[2]);
+  };
+  const int below = entry(has_low, low), above = entry(has_high, high);
+  couplings_.push_back({below, above, strength, (Real(1) - closed) * strength});
+}
+
 void CutPressure::begin(const CutCells& cut) {
+  if (entry_.size() == 0 && !cut.empty()) {
+    entry_ = Array3<int>(grid_.nx(), grid_.ny(), grid_.nz());
+    entry_.fill(-1);
+  }
+  for (const Entry& e : entries_) entry_(e.i, e.j, e.k) = -1;
   entries_.clear();
   couplings_.clear();
-  for (const CutCell& c : cut.cells) entries_.push_back({c.i, c.j, c.k});
-  const int first_ghost = static_cast<int>(entries_.size());
-  for (const GhostCell& g : cut.ghosts)  // those of solids come first
-    if (cut.index(g.i, g.j, g.k) < 0) entries_.push_back({g.i, g.j, g.k});
-  const auto entry = [&](int i, int j, int k) {
-    const int index = cut.index(i, j, k);
-    return index > 0 ? index - 1 : first_ghost - 1 - index;
-  };
+  for (const CutCell& c : cut.cells) add_entry(c.i, c.j, c.k);
+  for (std::size_t n = 0; n < cut.cells.size(); ++n)
+    if (cut.cells[n].carrier >= 0) entries_[n].one_with = cut.cells[n].carrier;
   for (const CutFace& f : cut.faces) {
-    const int at[3] = {f.i, f.j, f.k};
-    const int n = grid_.n(f.d);
-    const Real area = face_area_of(grid_, f.d, {f.i, f.j, f.k});
-    Coupling c{-1, -1, f.closed * area * grid_.metrics(f.d).inv_distance[at[f.d]]};
-    int below[3] = {f.i, f.j, f.k};
-    --below[f.d];
-    if (at[f.d] == 0 || at[f.d] == n) {
-      const PoissonBoundary kind = boundary_[static_cast<std::size_t>(2 * f.d + (at[f.d] == n))];
-      if (kind == PoissonBoundary::neumann || (kind == PoissonBoundary::periodic && at[f.d] == n)) continue;
-      if (kind == PoissonBoundary::periodic) {
-        below[f.d] = n - 1;
-      } else {
-        c.strength *= Real(2);
-        if (at[f.d] == 0) c.above = entry(f.i, f.j, f.k);
-        else c.below = entry(below[0], below[1], below[2]);
-        couplings_.push_back(c);
-        continue;
+    std::array<int, 3> below{f.i, f.j, f.k};
+    --below[static_cast<std::size_t>(f.d)];
+    // Within a solid faces may stay open: nothing reaches it from outside.
+    if (cut.index(f.i, f.j, f.k) < 0 && cut.index(below[0], below[1], below[2]) < 0) continue;
+    add_coupling(f.d, {f.i, f.j, f.k}, f.closed);
+  }
+  const auto small = [&](const std::array<int, 3>& at) {
+    const int index = cut.index(at[0], at[1], at[2]);
+    if (index <= 0) return false;
+    const int carrier = cut.cells[static_cast<std::size_t>(index - 1)].carrier;
+    return carrier >= 0 && carrier != index - 1;
+  };
+  for (const CutCell& c : cut.cells) {
+    if (!small({c.i, c.j, c.k})) continue;
+    for (int side = 0; side < 6; ++side) {
+      const std::size_t d = static_cast<std::size_t>(side / 2);
+      const int n = grid_.n(side / 2);
+      if (!grid_.active(side / 2)) continue;
+      std::array<int, 3> face{c.i, c.j, c.k}, beyond = face;
+      face[d] += side % 2;
+      beyond[d] += side % 2 ? 1 : -1;
+      if (cut.closed[d](face[0], face[1], face[2]) > Real(0)) continue;  // has been added
+      if (boundary_[2 * d] == PoissonBoundary::periodic) {
+        face[d] %= n;
+        beyond[d] = (beyond[d] + n) % n;
       }
+      const bool inside = beyond[d] >= 0 && beyond[d] < n;
+      if (side % 2 == 0 || !inside || !small(beyond)) add_coupling(side / 2, face, Real(0));
     }
-    c.below = entry(below[0], below[1], below[2]);
-    c.above = entry(f.i, f.j, f.k);
-    couplings_.push_back(c);
   }
   Range3 box{grid_.nx(), 0, grid_.ny(), 0, grid_.nz(), 0};
   for (const Entry& e : entries_) {
@@ -66,14 +109,43 @@ void CutPressure::begin(const CutCells& cut) {
     v->resize(entries_.size());
 }
 
-void CutPressure::through_closed(const std::vector<Real>& f, std::vector<Real>& out) {
+void CutPressure::balance(const CutCells& cut, ConstFieldView phi, Real dt,
+                          const std::array<FieldView, 3>& q) const {
+  for (std::size_t n = 0; n < cut.cells.size(); ++n) {
+    const CutCell& c = cut.cells[n];
+    if (c.carrier < 0 || c.carrier == static_cast<int>(n)) continue;
+    const CutCell& carrier = cut.cells[static_cast<std::size_t>(c.carrier)];
+    const Real change = dt * (phi(c.i, c.j, c.k) - phi(carrier.i, carrier.j, carrier.k));
+    for (int side = 0; side < 6; ++side) {
+      const std::size_t d = static_cast<std::size_t>(side / 2);
+      if (!grid_.active(side / 2)) continue;
+      std::array<int, 3> face{c.i, c.j, c.k};
+      face[d] += side % 2;
+      Real velocity = change * grid_.metrics(side / 2).inv_distance[face[d]];
+      if (side % 2) velocity = -velocity;
+      const int last = grid_.n(side / 2);
+      const bool of_box = face[d] == 0 || face[d] == last;
+      if (of_box && boundary_[static_cast<std::size_t>(side)] == PoissonBoundary::dirichlet)
+        velocity *= Real(2);
+      q[d](face[0], face[1], face[2]) += velocity;
+      if (!of_box || boundary_[static_cast<std::size_t>(side)] != PoissonBoundary::periodic) continue;
+      face[d] = last - face[d];
+      q[d](face[0], face[1], face[2]) += velocity;
+    }
+  }
+}
+
+void CutPressure::too_much(const std::vector<Real>& f, std::vector<Real>& out) {
   std::fill(out.begin(), out.end(), Real(0));
+  const auto shared = [&](int n) {
+    return static_cast<std::size_t>(entries_[static_cast<std::size_t>(n)].one_with);
+  };
   for (const Coupling& c : couplings_) {
-    const Real below = c.below < 0 ? Real(0) : f[static_cast<std::size_t>(c.below)],
-               above = c.above < 0 ? Real(0) : f[static_cast<std::size_t>(c.above)];
-    const Real flow = c.strength * (above - below);
-    if (c.below >= 0) out[static_cast<std::size_t>(c.below)] += flow;
-    if (c.above >= 0) out[static_cast<std::size_t>(c.above)] -= flow;
+    Real flow = 0;
+    if (c.below >= 0) flow -= c.whole * f[static_cast<std::size_t>(c.below)] - c.open * f[shared(c.below)];
+    if (c.above >= 0) flow += c.whole * f[static_cast<std::size_t>(c.above)] - c.open * f[shared(c.above)];
+    if (c.below >= 0) out[shared(c.below)] += flow;
+    if (c.above >= 0) out[shared(c.above)] -= flow;
   }
 }
 
@@ -116,8 +188,9 @@ void CutPressure::invert(const std::vector<Real>& r, std::vector<Real>& out) {
   from_window(out);
 }
 
-/// With L the operator of the whole grid and C what passes closed faces, (L - C) phi = rhs. Residuals and L
-/// times the directions vanish but on the entries, since L is inverted exactly.
+/// With L the operator of the whole grid and A that of the open parts of faces, P^T A P phi = P^T rhs. All
+/// vectors of the iteration are L^-1 of sources on the entries, since L is inverted exactly; sources are
+/// folded, none stands on a cell that is one with another.
 void CutPressure::solve(const CutCells& cut, FieldView phi, double tolerance) {
   for (const GhostCell& g : cut.ghosts)
     if (cut.index(g.i, g.j, g.k) < 0) phi(g.i, g.j, g.k) = 0;  // but for round-off it is
@@ -134,9 +207,9 @@ void CutPressure::solve(const CutCells& cut, FieldView phi, double tolerance) {
     whole_.solve(phi, phi);
     gather(phi, phi_);
   }
-  through_closed(phi_, residual_);
+  too_much(phi_, residual_);
   std::fill(source_.begin(), source_.end(), Real(0));
-  // r = C phi, z = L^-1 r; steps along z, on which (L - C) is negative definite
+  // r = P^T (rhs - A P phi), z = L^-1 r; steps along z, on which P^T A P is negative definite
   double before = 0.0, first = 0.0, least = 0.0;
   for (int n = 0; n < kMostIterations; ++n) {
     invert(residual_, z_);
@@ -151,7 +224,7 @@ void CutPressure::solve(const CutCells& cut, FieldView phi, double tolerance) {
       direction_[e] = z_[e] + (n == 0 ? Real(0) : beta * direction_[e]);
       whole_direction_[e] = residual_[e] + (n == 0 ? Real(0) : beta * whole_direction_[e]);
     }
-    through_closed(direction_, closed_);
+    too_much(direction_, closed_);
     for (std::size_t e = 0; e < closed_.size(); ++e) closed_[e] = whole_direction_[e] - closed_[e];
     const double curvature = -product(direction_, closed_);
     if (!(curvature > 0.0)) break;
@@ -165,13 +238,18 @@ void CutPressure::solve(const CutCells& cut, FieldView phi, double tolerance) {
   if (windows) {
     to_window(source_);
     whole_.add(window_);
-    return whole_.finish(phi);
+    whole_.finish(phi);
+  } else {
+    scatter(source_);
+    whole_.solve(sources_.view(), work_.view());
+    for_each_cell(grid_.range(),
+                  [=, work = work_.view()](int i, int j, int k) { phi(i, j, k) += work(i, j, k); });
+    for (const Entry& e : entries_) sources_(e.i, e.j, e.k) = 0;
   }
-  scatter(source_);
-  whole_.solve(sources_.view(), work_.view());
-  for_each_cell(grid_.range(),
-                [=, work = work_.view()](int i, int j, int k) { phi(i, j, k) += work(i, j, k); });
-  for (const Entry& e : entries_) sources_(e.i, e.j, e.k) = 0;
+  for (const Entry& e : entries_) {
+    const Entry& other = entries_[static_cast<std::size_t>(e.one_with)];
+    phi(e.i, e.j, e.k) = phi(other.i, other.j, other.k);
+  }
 }
 
 }  // namespace ejecta

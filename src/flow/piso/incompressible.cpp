@@ -19,7 +19,7 @@ namespace {
 constexpr double kStageWeight = 0.5;
 /// What may pass closed faces after a correction, of what would without it. Pressure is incremental: what is
 /// left over is met again in the next correction. With 0.01 the force on a fixed cube is the same to 2e-5.
-constexpr double kClosedTolerance = 0.03;
+constexpr double kClosedTolerance = 0.01;
 /// Time of the pressure's filter (projection.hpp), parts of the step at Courant number 1: takes a quarter of
 /// what alternates in each correction and is the same for all Courant numbers from this one on.
 constexpr double kFilter = 0.25;
@@ -174,9 +174,11 @@ void Incompressible::correct(const CutCells& cut, Real dt) {
     cut_pressure_.solve(cut, phi_.view(), kClosedTolerance);
   }
   ScopedTimer timer(times_.correction);
+  cut_flow_.extend_to_small(cut, phi_.view());
   boundaries_.fill_pressure(phi_.view(), views(q_), false);
   cut_flow_.keep(cut, std::as_const(*this).views(u_star_));
   apply_correction(grid_, phi_.view(), dt, views(q_), views(u_star_), p_.view());
+  cut_pressure_.balance(cut, phi_.view(), dt, views(q_));
   cut_flow_.correct(cut, phi_.view(), dt, views(q_), views(u_star_));
   boundaries_.prescribe_face_velocity(views(q_));
   cut_flow_.extend(cut, views(u_star_), wall_turbulence());
@@ -189,6 +191,7 @@ void Incompressible::advance(double time, double dt, SolidMask& solids) {
   filter_time_ = static_cast<Real>(kFilter / std::max(courant(1.0), 1e-30));
   convection_ = -1.0;
   move_displaced(cut_flow_.begin(cut, std::as_const(*this).views(u_)));
+  cut_flow_.extend_to_small(cut, p_.view());
   cut_pressure_.begin(cut);
   smoothing_ = turbulence_ && dt > explicit_dt_;
   if (smoothing_) smoother_.prepare(0.5 * dt * largest_viscosity_, cut, cut_flow_.carried());
@@ -216,7 +219,7 @@ void Incompressible::advance(double time, double dt, SolidMask& solids) {
   if (!cut.empty())
     boundaries_.fill_pressure(p_.view(), views(q_), true);  // of bodies across the faces of the box
   cut_flow_.press(cut, p_.view(), dt * setup_.density);
-  cut_flow_.extend_pressure(cut, p_.view());
+  cut_flow_.extend_to_solids(cut, p_.view());
   for (std::size_t w = 0; w < cut.walls.size(); ++w)
     ledger_.impulse_on_solids += cut.pressure_impulse[w] + cut.friction_impulse[w];
 

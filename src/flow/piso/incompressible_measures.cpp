@@ -137,9 +137,10 @@ double Incompressible::courant(double dt) const {
 
 double Incompressible::largest_divergence(const CutCells& cut) {
   cut_flow_.close(cut, views(q_));
-  const double largest = ejecta::largest_divergence(grid_, std::as_const(*this).views(q_));
+  divergence(grid_, std::as_const(*this).views(q_), Real(1), phi_.view());
   cut_flow_.reopen(cut, views(q_));
-  return largest;
+  cut_flow_.fold(cut, phi_.view());
+  return ejecta::largest_divergence(grid_, std::as_const(*this).views(q_), phi_.view());
 }
 
 Vec3 Incompressible::momentum() const {

@@ -122,8 +122,7 @@ void apply_correction(const Grid& grid, ConstFieldView phi, Real dt, const std::
   });
 }
 
-double largest_divergence(const Grid& grid, const std::array<ConstFieldView, 3>& q) {
-  const Outflow out = outflow(grid, q);
+double largest_divergence(const Grid& grid, const std::array<ConstFieldView, 3>& q, ConstFieldView outflow) {
   const auto speed = [&](int d) {
     return reduce_max(grid.range(), [=, v = q[d]](int i, int j, int k) { return std::abs(v(i, j, k)); });
   };
@@ -132,7 +131,7 @@ double largest_divergence(const Grid& grid, const std::array<ConstFieldView, 3>&
   return reduce_max(grid.range(), [=](int i, int j, int k) {
     const Real volume = m[0].volume[i] * m[1].volume[j] * m[2].volume[k];
     const Real width = std::min({m[0].width[i], m[1].width[j], m[2].width[k]});
-    return std::abs(out(i, j, k)) * width / volume / fastest;  // at rest their product would be 0
+    return std::abs(outflow(i, j, k)) * width / volume / fastest;  // at rest their product would be 0
   });
 }
 

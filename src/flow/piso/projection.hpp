@@ -22,7 +22,8 @@ void divergence(const Grid& grid, const std::array<ConstFieldView, 3>& q, Real d
 void apply_correction(const Grid& grid, ConstFieldView phi, Real dt, const std::array<FieldView, 3>& q,
                       const std::array<FieldView, 3>& u, FieldView p);
 
-/// Largest |net volume flow out of a cell| / (volume * velocity / width): relative divergence of q.
-double largest_divergence(const Grid& grid, const std::array<ConstFieldView, 3>& q);
+/// Largest |net volume flow out of a cell| / (volume * velocity / width): relative divergence of q. outflow:
+/// m3/s of every cell.
+double largest_divergence(const Grid& grid, const std::array<ConstFieldView, 3>& q, ConstFieldView outflow);
 
 }  // namespace ejecta
