@@ -70,6 +70,7 @@ Boundary make_boundary(const Case& c, const Grid& grid, const StillAir& air, con
     s.second = static_cast<Real>(turbulence.second);
     return s;
   };
+  std::function<BoundaryState(const Vec3&, double)> outside;  // of an open face, apart from discs in it
   const bool axis = grid.axisymmetric() && face == 0 && grid.lower().x() == 0.0;
   switch (axis ? BoundaryType::symmetry : spec.type) {
     case BoundaryType::slip:
@@ -90,16 +91,13 @@ Boundary make_boundary(const Case& c, const Grid& grid, const StillAir& air, con
           b.total_pressure && spec.total_pressure > 0.0 ? spec.total_pressure - ambient : 0.0;
       const auto given = spec.state.pressure ? std::optional(Expression(*spec.state.pressure)) : std::nullopt;
       b.varies = b.varies || (given && given->uses_time());
-      b.state = [=](const Vec3& x, double t) {
+      b.discs = !spec.patches.empty();
+      outside = [=](const Vec3& x, double t) {
         BoundaryState s;
         s.pressure = static_cast<Real>((given ? (*given)(x.x(), x.y(), x.z(), t) : stagnation) / air.density);
         return with_turbulence(s, formula.turbulence_at(x, t));
       };
-      if (!spec.patches.empty())
-        throw InputError(fmt::format(
-            "boundary.{}: patches of an incompressible flow need a face of type wall, velocity or jet",
-            face_name(face)));
-      return b;
+      break;
     }
     case BoundaryType::wall:
     case BoundaryType::moving_wall:
@@ -125,15 +123,21 @@ Boundary make_boundary(const Case& c, const Grid& grid, const StillAir& air, con
   b.varies = b.varies || whole_jet;
   b.state = [=, &c, &grid](Vec3 x, double t) {
     if (grid.axisymmetric()) x.y() = c.jet.nozzle.y();  // all around is in the one cell
-    bool blown = whole_jet;
-    const StateFormula* f = &formula;
+    const Piece* piece = nullptr;
     for (const Piece& p : pieces)
-      if ((x - p.centre).norm() <= p.radius) blown = p.jet, f = &p.formula;
+      if ((x - p.centre).norm() <= p.radius) piece = &p;
+    if (!piece && outside) return outside(x, t);
     BoundaryState s;
-    if (blown) return jet_state(grid, air, *jet, x, t);
-    const Vec3 v = f->at(x, t);
-    for (int d = 0; d < 3; ++d) s.velocity[static_cast<std::size_t>(d)] = static_cast<Real>(v[d]);
-    return with_turbulence(s, f->turbulence_at(x, t));
+    if (piece ? piece->jet : whole_jet) {
+      s = jet_state(grid, air, *jet, x, t);
+    } else {
+      const StateFormula& f = piece ? piece->formula : formula;
+      const Vec3 v = f.at(x, t);
+      for (int d = 0; d < 3; ++d) s.velocity[static_cast<std::size_t>(d)] = static_cast<Real>(v[d]);
+      s = with_turbulence(s, f.turbulence_at(x, t));
+    }
+    s.prescribed = outside != nullptr;
+    return s;
   };
   return b;
 }

@@ -35,6 +35,23 @@ Boundaries::Boundaries(const Grid& grid, std::array<Boundary, 6> faces)
   }
 }
 
+std::array<int, 3> Boundaries::on_face(int face, int a, int b) const {
+  const int d = face / 2;
+  const Index f = index_on(d, a, b, face % 2 ? grid_.n(d) : 0);
+  return {f.i, f.j, f.k};
+}
+
+bool Boundaries::prescribed_on(int d, const std::array<int, 3>& face) const {
+  const int at = face[static_cast<std::size_t>(d)];
+  if (at != 0 && at != grid_.n(d)) return false;
+  return prescribed(2 * d + (at != 0), face[static_cast<std::size_t>(first_across(d))],
+                    face[static_cast<std::size_t>(second_across(d))]);
+}
+
+bool Boundaries::discs() const {
+  return std::any_of(faces_.begin(), faces_.end(), [](const Boundary& b) { return b.discs; });
+}
+
 bool Boundaries::open() const {
   for (int face = 0; face < 6; ++face)
     if (grid_.active(face / 2) && kind(face) == BoundaryKind::open) return true;
@@ -133,7 +150,8 @@ void Boundaries::fill_velocity(std::array<FieldView, 3> u, const std::array<Fiel
         break;
       case BoundaryKind::open:
         // Fluid that comes in through an open boundary brings no tangential momentum.
-        fill_side(u, s, false, [=](std::size_t c, int, int a, int b, std::ptrdiff_t, Real inner) {
+        fill_side(u, s, false, [=, this](std::size_t c, int, int a, int b, std::ptrdiff_t, Real inner) {
+          if (prescribed(face, a, b)) return Real(2) * at(face, a, b).velocity[c] - inner;
           const Real through = through_face[s.cell(a, b)];
           const bool enters = s.upper ? through < 0 : through > 0;
           return !enters ? inner : c == d ? Real(2) * through - inner : -inner;
@@ -154,24 +172,33 @@ void Boundaries::fill_pressure(FieldView p, const std::array<FieldView, 3>& q, b
     const Side s = side(p, face);
     if (boundary.kind == BoundaryKind::mirror || boundary.kind == BoundaryKind::periodic) {
       fill_side<1>({p}, s, boundary.kind == BoundaryKind::periodic, kCopy);
-    } else if (boundary.kind == BoundaryKind::open) {
+      continue;
+    }
+    // Linear extrapolation keeps the pressure force second-order next to walls and inflows.
+    const Metrics m = grid_.metrics(s.d);
+    const int n = grid_.n(s.d), cell = s.upper ? n - 1 : 0, next = s.upper ? n - 2 : 1;
+    const Real inv_distance = s.upper ? m.inv_distance[n - 1] : m.inv_distance[1];
+    const std::array<Real, kGhosts> distance{m.width[cell],
+                                             Real(1.5) * m.width[cell] + Real(0.5) * m.width[next]};
+    const Real* origin = p.origin;
+    const auto extrapolated = [=](int layer, std::ptrdiff_t at) {
+      return origin[at] +
+             (origin[at] - origin[at - s.outward]) * inv_distance * distance[static_cast<std::size_t>(layer)];
+    };
+    if (boundary.kind == BoundaryKind::open) {
       const Real dynamic = total && boundary.total_pressure ? Real(0.5) : Real(0);
       const Real* through_face = q[static_cast<std::size_t>(s.d)].origin + s.face;
-      fill_side<1>({p}, s, false, [=, this](std::size_t, int, int a, int b, std::ptrdiff_t, Real inner) {
-        const Real fixed = total ? at(face, a, b).pressure : Real(0);
-        const Real through = through_face[s.cell(a, b)];
-        const bool enters = s.upper ? through < 0 : through > 0;
-        return Real(2) * (fixed - (enters ? dynamic * through * through : Real(0))) - inner;
-      });
+      fill_side<1>({p}, s, false,
+                   [=, this](std::size_t, int layer, int a, int b, std::ptrdiff_t cell_at, Real inner) {
+                     if (prescribed(face, a, b)) return extrapolated(layer, cell_at);
+                     const Real fixed = total ? at(face, a, b).pressure : Real(0);
+                     const Real through = through_face[s.cell(a, b)];
+                     const bool enters = s.upper ? through < 0 : through > 0;
+                     return Real(2) * (fixed - (enters ? dynamic * through * through : Real(0))) - inner;
+                   });
     } else {
-      // Linear extrapolation keeps the pressure force second-order next to walls and inflows.
-      const Metrics m = grid_.metrics(s.d);
-      const int n = grid_.n(s.d), cell = s.upper ? n - 1 : 0, next = s.upper ? n - 2 : 1;
-      const Real inv_distance = s.upper ? m.inv_distance[n - 1] : m.inv_distance[1];
-      const Real distance[kGhosts] = {m.width[cell], Real(1.5) * m.width[cell] + Real(0.5) * m.width[next]};
-      const Real* origin = p.origin;
-      fill_side<1>({p}, s, false, [=](std::size_t, int layer, int, int, std::ptrdiff_t at, Real) {
-        return origin[at] + (origin[at] - origin[at - s.outward]) * inv_distance * distance[layer];
+      fill_side<1>({p}, s, false, [=](std::size_t, int layer, int, int, std::ptrdiff_t cell_at, Real) {
+        return extrapolated(layer, cell_at);
       });
     }
   }
@@ -204,11 +231,22 @@ void Boundaries::prescribe_face_velocity(std::array<FieldView, 3> q) const {
     const Plane& plane = planes_[static_cast<std::size_t>(face)];
     for_each_index(plane.nb, [&](int b) {
       for (int a = 0; a < plane.na; ++a) {
-        const Index f = index_on(d, a, b, face % 2 ? grid_.n(d) : 0);
-        q[d](f.i, f.j, f.k) =
+        const auto [i, j, k] = on_face(face, a, b);
+        q[d](i, j, k) =
             kind == BoundaryKind::mirror ? Real(0) : at(face, a, b).velocity[static_cast<std::size_t>(d)];
       }
     });
+  }
+  for (int face = 0; face < 6; ++face) {
+    const int d = face / 2;
+    if (!grid_.active(d) || !(*this)[face].discs) continue;
+    const Plane& plane = planes_[static_cast<std::size_t>(face)];
+    for (int b = 0; b < plane.nb; ++b)
+      for (int a = 0; a < plane.na; ++a)
+        if (prescribed(face, a, b)) {
+          const auto [i, j, k] = on_face(face, a, b);
+          q[d](i, j, k) = at(face, a, b).velocity[static_cast<std::size_t>(d)];
+        }
   }
 }
 
@@ -222,6 +260,7 @@ void Boundaries::fill_face_velocity(std::array<FieldView, 3> q, const std::array
     const Plane& plane = planes_[static_cast<std::size_t>(face)];
     for_each_index(plane.nb, [&](int b) {
       for (int a = 0; a < plane.na; ++a) {
+        if (prescribed(face, a, b)) continue;
         const Index f = index_on(d, a, b, face % 2 ? n : 0), in = index_on(d, a, b, cell);
         const Real* pc = &p(in.i, in.j, in.k);
         const std::ptrdiff_t s = stride(p, d);

@@ -18,6 +18,7 @@ enum class BoundaryKind { inflow, wall, mirror, open, periodic };
 struct BoundaryState {
   std::array<Real, 3> velocity{0, 0, 0};
   Real k = 0, second = 0, pressure = 0;
+  bool prescribed = false;  ///< the velocity holds although the face is open (a nozzle in it)
 };
 
 struct Boundary {
@@ -25,6 +26,7 @@ struct Boundary {
   std::function<BoundaryState(const Vec3& position, double time)> state;  ///< empty: at rest
   bool varies = false;                                                    ///< state depends on time
   bool total_pressure = false;  ///< open: the state's pressure is the stagnation value where fluid enters
+  bool discs = false;           ///< open: states may prescribe the velocity in parts of it
 };
 
 /// The six boundaries with their states on every face cell, refreshed once a stage.
@@ -35,6 +37,25 @@ class Boundaries {
   const Boundary& operator[](int face) const { return faces_[static_cast<std::size_t>(face)]; }
   BoundaryKind kind(int face) const { return faces_[static_cast<std::size_t>(face)].kind; }
   bool open() const;  ///< at least one boundary fixes the pressure
+  /// Whether face cell (a, b) of an open face has a velocity of its own.
+  bool prescribed(int face, int a, int b) const {
+    return faces_[static_cast<std::size_t>(face)].discs && at(face, a, b).prescribed;
+  }
+  /// The same of a face of the grid; false inside the box.
+  bool prescribed_on(int d, const std::array<int, 3>& face) const;
+  bool discs() const;  ///< whether there may be such cells
+  /// visit(d, face of the grid) for all of them.
+  template <class Visit>
+  void for_each_prescribed(const Visit& visit) const {
+    for (int face = 0; face < 6; ++face) {
+      const int d = face / 2;
+      if (!grid_.active(d) || !faces_[static_cast<std::size_t>(face)].discs) continue;
+      const Plane& plane = planes_[static_cast<std::size_t>(face)];
+      for (int b = 0; b < plane.nb; ++b)
+        for (int a = 0; a < plane.na; ++a)
+          if (prescribed(face, a, b)) visit(d, on_face(face, a, b));
+    }
+  }
 
   /// Evaluates the states at `time`; those that do not vary only once.
   void update(double time);
@@ -78,6 +99,7 @@ class Boundaries {
     std::ptrdiff_t cell(int a, int b) const { return first + a * step_a + b * step_b; }
   };
   Side side(const FieldView& f, int face) const;
+  std::array<int, 3> on_face(int face, int a, int b) const;
   template <std::size_t kN, class Ghost>
   void fill_side(const std::array<FieldView, kN>& fields, const Side& s, bool periodic,
                  const Ghost& ghost) const;

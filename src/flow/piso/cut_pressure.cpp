@@ -56,8 +56,8 @@ void CutPressure::add_coupling(int d, std::array<int, 3> face, Real closed) {
   couplings_.push_back({below, above, strength, (Real(1) - closed) * strength});
 }
 
-void CutPressure::begin(const CutCells& cut) {
-  if (entry_.size() == 0 && !cut.empty()) {
+void CutPressure::begin(const CutCells& cut, const Boundaries& boundaries) {
+  if (entry_.size() == 0 && (!cut.empty() || boundaries.discs())) {
     entry_ = Array3<int>(grid_.nx(), grid_.ny(), grid_.nz());
     entry_.fill(-1);
   }
@@ -72,6 +72,7 @@ void CutPressure::begin(const CutCells& cut) {
     --below[static_cast<std::size_t>(f.d)];
     // Within a solid faces may stay open: nothing reaches it from outside.
     if (cut.index(f.i, f.j, f.k) < 0 && cut.index(below[0], below[1], below[2]) < 0) continue;
+    if (boundaries.prescribed_on(f.d, {f.i, f.j, f.k})) continue;
     add_coupling(f.d, {f.i, f.j, f.k}, f.closed);
   }
   const auto small = [&](const std::array<int, 3>& at) {
@@ -95,9 +96,12 @@ void CutPressure::begin(const CutCells& cut) {
         beyond[d] = (beyond[d] + n) % n;
       }
       const bool inside = beyond[d] >= 0 && beyond[d] < n;
+      if (boundaries.prescribed_on(side / 2, face)) continue;
       if (side % 2 == 0 || !inside || !small(beyond)) add_coupling(side / 2, face, Real(0));
     }
   }
+  boundaries.for_each_prescribed(
+      [&](int d, const std::array<int, 3>& face) { add_coupling(d, face, Real(1)); });
   Range3 box{grid_.nx(), 0, grid_.ny(), 0, grid_.nz(), 0};
   for (const Entry& e : entries_) {
     box.i0 = std::min(box.i0, e.i), box.i1 = std::max(box.i1, e.i + 1);

@@ -2,6 +2,7 @@
 #include <array>
 #include <vector>
 
+#include "flow/boundary.hpp"
 #include "flow/cut_cells.hpp"
 #include "flow/poisson/fast_diagonal.hpp"
 #include "grid/grid.hpp"
@@ -21,8 +22,8 @@ class CutPressure {
  public:
   CutPressure(const Grid& grid, FastDiagonalPoisson& whole, const std::array<PoissonBoundary, 6>& boundary);
 
-  /// The faces of this step.
-  void begin(const CutCells& cut);
+  /// The faces of this step: what bodies close, and where an open boundary prescribes the velocity.
+  void begin(const CutCells& cut, const Boundaries& boundaries);
   /// phi, given as the right-hand side (volume flow over dt, m3/s2), becomes the solution; stops when what
   /// still passes closed faces is `tolerance` of what would without them.
   void solve(const CutCells& cut, FieldView phi, double tolerance);

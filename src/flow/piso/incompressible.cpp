@@ -96,7 +96,7 @@ void Incompressible::initialise(const std::function<Vec3(const Vec3&)>& velocity
   // One projection with an arbitrary step: only velocities change, the pressure is the one given.
   const Real dt = 1;
   const CutCells none;
-  cut_pressure_.begin(none);
+  cut_pressure_.begin(none, boundaries_);
   Field given = p_;
   p_.fill(0);
   for (int c = 0; c < 3; ++c) u_star_[c] = u_[c];
@@ -192,7 +192,7 @@ void Incompressible::advance(double time, double dt, SolidMask& solids) {
   convection_ = -1.0;
   move_displaced(cut_flow_.begin(cut, std::as_const(*this).views(u_)));
   cut_flow_.extend_to_small(cut, p_.view());
-  cut_pressure_.begin(cut);
+  cut_pressure_.begin(cut, boundaries_);
   smoothing_ = turbulence_ && dt > explicit_dt_;
   if (smoothing_) smoother_.prepare(0.5 * dt * largest_viscosity_, cut, cut_flow_.carried());
 
