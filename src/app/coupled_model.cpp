@@ -60,8 +60,7 @@ CouplingSetup CoupledModel::coupling_setup() const {
   CouplingSetup s;
   s.fluid_density = flow_->density();
   s.gravity = case_.environment.gravity;
-  s.bodies = case_.flow.solver == FlowSolver::incompressible ? BodiesAs::cut_cells : BodiesAs::forced_cells;
-  if (s.bodies == BodiesAs::cut_cells) s.body_force = case_.flow.body_force;
+  s.body_force = case_.flow.body_force;
   for (std::size_t d = 0; d < 3; ++d)
     s.periodic[d] = grid_.active(int(d)) && case_.boundary[2 * d].type == BoundaryType::periodic;
   for (const Body& b : particles_.bodies())
@@ -121,19 +120,19 @@ void CoupledModel::check_bodies() const {
 void CoupledModel::build_step() {
   if (coupling_)
     step_.push_back(
-        {"map.bodies", "cells with signed distance < 0 move with their body", [this](double, double) {
+        {"map.bodies", "what bodies leave of cells and faces, and their walls", [this](double, double) {
            if (air_) coupling_->map(particles_.bodies(), mask_);
          }});
   if (flow_)
-    step_.push_back({"flow.advance",
-                     "one step of the fluid, driven to the velocity of bodies inside them (see flow.* below)",
+    step_.push_back({"flow.advance", "one step of the fluid around the bodies (see flow.* below)",
                      [this](double time, double dt) {
                        if (!air_) return;
                        flow_->advance(time, dt, mask_);
                        ++flow_steps_;
                      }});
   if (coupling_)
-    step_.push_back({"loads.collect", "F = -sum(impulse)/dt + rho V a - rho V g, T = sum r x F",
+    step_.push_back({"loads.collect",
+                     "F = sum of pressure and friction on its walls - rho V g, T = sum r x F",
                      [this](double time, double dt) {
                        if (!air_) {
                          std::fill(loads_.begin(), loads_.end(), Load{});

@@ -10,17 +10,12 @@
 
 namespace ejecta {
 
-/// How the flow sees bodies: as cut cells with walls (incompressible), or as cells it drives to their
-/// velocity, whose reaction is the force (compressible).
-enum class BodiesAs { cut_cells, forced_cells };
-
 struct CouplingSetup {
   double fluid_density = 0.0;  ///< kg/m3
   Vec3 gravity{0, 0,
                0};  ///< acts on the fluid as well, hidden in its hydrostatic pressure: returns as buoyancy
   Vec3 body_force{0, 0,
                   0};  ///< m/s2 that drives the fluid like a gradient of pressure: acts on bodies by volume
-  BodiesAs bodies = BodiesAs::cut_cells;
   std::array<bool, 3> periodic{};
   std::vector<double> roughness;  ///< of every body, sand-grain height, m
 };
@@ -35,16 +30,13 @@ class ResolvedCoupling {
  public:
   ResolvedCoupling(const Grid& grid, CouplingSetup setup);
 
-  /// Fills mask.cut, or mask.cells with the cells whose centres lie inside bodies.
+  /// Fills mask.cut.
   void map(std::span<const Body> bodies, SolidMask& mask);
-  /// Force and torque on every body over the last flow step of length dt. Cut cells: pressure and friction on
-  /// its walls and buoyancy, averaged over the steps before with the weight of the displaced fluid against
-  /// that of the body, lambda = rho V / (m + rho V): F += (1 - lambda) (F_now - F). The fluid answers an
-  /// acceleration within the step that follows, so that for a body lighter than its added mass the plain
-  /// force grows without bound from step to step; this one settles on the same value, and for ore in air
-  /// lambda is 4e-4. Forced cells: F = -sum(impulse) / dt + rho V a - rho V g, where the second term returns
-  /// the inertia of the fictitious fluid inside the body (Uhlmann 2005, eq. 18), with the body's acceleration
-  /// over the step before.
+  /// Force and torque on every body over the last flow step of length dt: pressure and friction on its walls
+  /// and buoyancy, averaged over the steps before with the weight of the displaced fluid against that of the
+  /// body, lambda = rho V / (m + rho V): F += (1 - lambda) (F_now - F). The fluid answers an acceleration
+  /// within the step that follows, so that for a body lighter than its added mass the plain force grows
+  /// without bound from step to step; this one settles on the same value, and for ore in air lambda is 4e-4.
   void collect(std::span<const Body> bodies, const SolidMask& mask, double dt, std::span<Load> loads);
 
   const std::vector<ForceParts>& parts() const { return parts_; }
@@ -55,19 +47,9 @@ class ResolvedCoupling {
   void restore(std::span<const double> state);
 
  private:
-  struct Extent {
-    int lower[3], upper[3];
-    bool empty;
-  };
-  Extent extent(const Body& body) const;
-  void map_row(const Body& body, int index, const Extent& e, int j, int k, std::vector<SolidCell>& out) const;
-  SolidCell solid_cell(const Body& body, int index, int i, int j, int k, double distance) const;
-
-  void collect_walls(std::span<const Body> bodies, const CutCells& cut, double dt, std::span<Load> loads);
-  void collect_forcing(std::span<const Body> bodies, const SolidMask& mask, double dt, std::span<Load> loads);
+  bool inside(const Body& body) const;
 
   struct Before {
-    Vec3 velocity{0, 0, 0}, angular_momentum{0, 0, 0};
     Load push;  // what the body was given
     bool known = false;
   };
@@ -76,8 +58,7 @@ class ResolvedCoupling {
   CutMap cut_map_;
   std::vector<ForceParts> parts_;
   std::vector<Before> motion_;
-  std::vector<std::vector<SolidCell>> planes_;  // scratch, one list a plane of cells
-  std::vector<double> wetted_;                  // scratch, volume of the cells of each body, m3
+  std::vector<double> wetted_;  // scratch, area of the walls of each body, m2
 };
 
 }  // namespace ejecta

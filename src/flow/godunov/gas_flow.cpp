@@ -27,7 +27,8 @@ GasFlow::GasFlow(const Grid& grid, const Options& options)
       next_(make_block(grid)),
       flux_{make_block(grid), make_block(grid), make_block(grid)},
       eddy_viscosity_(grid.make_field()),
-      f1_(grid.make_field()) {
+      f1_(grid.make_field()),
+      solid_distance_(grid) {
   const double cp = options.gas.specific_heat_pressure();
   diffusion_.viscosity = Real(options.viscosity);
   diffusion_.conductivity = Real(options.viscosity * cp / options.prandtl);
@@ -74,12 +75,19 @@ double GasFlow::total(Component c) const {
   const Metrics x = grid_.metrics(0), y = grid_.metrics(1), z = grid_.metrics(2);
   const auto u = u_[static_cast<std::size_t>(c)].view();
   const double around = grid_.axisymmetric() ? 2.0 * std::numbers::pi : 1.0;
+  const ConstFieldView gas = part();
   return around * reduce_sum(grid_.range(), [=](int i, int j, int k) {
-           return double(u(i, j, k)) * double(x.volume[i]) * double(y.volume[j]) * double(z.volume[k]);
+           const double share = gas.origin ? double(gas(i, j, k)) : 1.0;
+           return share * double(u(i, j, k)) * double(x.volume[i]) * double(y.volume[j]) *
+                  double(z.volume[k]);
          });
 }
 
-void GasFlow::add_to_ledger(double seconds) {
+Contents GasFlow::contents() const {
+  return {total(kRho), {total(kU), grid_.active(1) ? total(kV) : 0.0, total(kW)}, total(kP)};
+}
+
+void GasFlow::add_to_ledger(double seconds, const CutCells& cut) {
   const double around = grid_.axisymmetric() ? 2.0 * std::numbers::pi : 1.0;
   const Metrics m[3]{grid_.metrics(0), grid_.metrics(1), grid_.metrics(2)};
   for (int face = 0; face < 6; ++face) {
@@ -88,8 +96,10 @@ void GasFlow::add_to_ledger(double seconds) {
     const double inward = (face % 2 ? -1.0 : 1.0) * seconds * around;
     const Block& f = flux(d);
     for_each_face_cell(grid_, face, [&](std::size_t, const int(&at)[3]) {
-      const double through =
-          inward * double(m[d].area[at[d]]) * double(m[a].volume[at[a]]) * double(m[b].volume[at[b]]);
+      const double closed =
+          cut.empty() ? 0.0 : double(cut.closed[static_cast<std::size_t>(d)](at[0], at[1], at[2]));
+      const double through = (1.0 - closed) * inward * double(m[d].area[at[d]]) * double(m[a].volume[at[a]]) *
+                             double(m[b].volume[at[b]]);
       const auto value = [&](int c) {
         return through * double(f[static_cast<std::size_t>(c)](at[0], at[1], at[2]));
       };

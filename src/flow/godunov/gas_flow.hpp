@@ -7,6 +7,7 @@
 #include "flow/godunov/geometry.hpp"
 #include "flow/godunov/turbulence_kernel.hpp"
 #include "flow/solid_mask.hpp"
+#include "flow/turbulence/solid_distance.hpp"
 #include "grid/faces.hpp"
 
 namespace ejecta::godunov {
@@ -23,6 +24,23 @@ struct Options {
   int stages = 2;            ///< Godunov. 2: Heun's method, 3: third order (both strong-stability preserving)
 };
 
+/// What gas holds.
+struct Contents {
+  double mass = 0.0;       ///< kg
+  Vec3 momentum{0, 0, 0};  ///< N s
+  double energy = 0.0;     ///< J
+
+  Contents& operator+=(const Contents& o) {
+    mass += o.mass;
+    momentum += o.momentum;
+    energy += o.energy;
+    return *this;
+  }
+  Contents operator-(const Contents& o) const {
+    return {mass - o.mass, momentum - o.momentum, energy - o.energy};
+  }
+};
+
 /// What has entered through the boundaries since the start (axisymmetric: the full circle). Momentum counts
 /// the pressure from the reference.
 struct BoundaryLedger {
@@ -32,6 +50,7 @@ struct BoundaryLedger {
   Vec3 momentum{0, 0, 0};            ///< N s
   Vec3 momentum_of_solids{0, 0, 0};  ///< N s, what solids in the flow gave it
   double work_of_solids = 0.0;       ///< J
+  Contents displaced;  ///< what the geometry of solids put into the sums; first of all, their own volume
 };
 
 /// Compressible flow of an ideal gas in conservative finite volumes, on Cartesian and axisymmetric grids: the
@@ -54,13 +73,16 @@ class GasFlow {
   /// Largest stable step for a Courant number, s. Throws DivergedError with place and state when a cell holds
   /// no number.
   virtual double stable_dt(double courant) = 0;
-  /// One step, with the cells of `solids` driven to their velocity. Allocates nothing.
+  /// One step, around `solids`.
   virtual void advance(double dt, SolidMask& solids) = 0;
   /// One step without solids.
   void advance(double dt) { advance(dt, no_solids_); }
 
-  /// Integral of a conserved component over the box (axisymmetric: the full circle).
+  /// Integral of a conserved component over the gas in the box (axisymmetric: the full circle).
   double total(Component c) const;
+  Contents contents() const;
+  /// Part of every cell's volume whose gas it keeps: solids have none. Origin null: all of it.
+  ConstFieldView part() const { return part_ ? part_->view() : ConstFieldView{}; }
   /// Primitive variables with ghosts, pressure relative to the reference.
   const Block& primitive() const { return w_; }
   /// Fluxes per area of the last stage through the lower faces along x (0), y (1) or z (2), pressure counted
@@ -73,6 +95,8 @@ class GasFlow {
   /// Everything a resume needs besides the ledger.
   virtual std::vector<Field*> state();
   virtual std::vector<double*> state_numbers() { return {}; }
+  /// To be called after `state()` has been filled again.
+  virtual void resume() {}
 
  protected:
   GasFlow(const Grid& grid, const Options& options);
@@ -97,8 +121,8 @@ class GasFlow {
   template <class P, class Convection>
   void fluxes(const Block& primitive, const Convection& convection);
   /// k, e and the eddy viscosity after their sources over dt.
-  void advance_turbulence(double dt, const Dilatation& dilatation);
-  void add_to_ledger(double seconds);
+  void advance_turbulence(double dt, const Dilatation& dilatation, const CutCells& cut);
+  void add_to_ledger(double seconds, const CutCells& cut);
   /// Throws DivergedError that names a cell which is no gas.
   [[noreturn]] void report_divergence() const;
 
@@ -111,6 +135,7 @@ class GasFlow {
   Block u_, w_, next_;  ///< conserved; primitive; scratch of the primitive ones
   std::array<Block, 3> flux_;
   Field eddy_viscosity_, f1_;
+  const Field* part_ = nullptr;  ///< of part(), that of a solver which knows solids
 
  private:
   template <bool Sst, bool RoundJet>
@@ -118,6 +143,7 @@ class GasFlow {
   void set_turbulence_constants();
   void measure_walls();
   std::array<std::vector<Real>, 3> wall_distance_;
+  SolidDistance solid_distance_;  ///< SST
   bool started_ = false;
   BoundaryLedger ledger_;
   SolidMask no_solids_;

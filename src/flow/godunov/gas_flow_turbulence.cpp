@@ -20,11 +20,10 @@ void GasFlow::set_turbulence_constants() {
 }
 
 void GasFlow::measure_walls() {
-  constexpr Real kNone = Real(1e3);  // m: no wall in sight
   for (int d = 0; d < 3; ++d) {
     const Axis& axis = grid_.axis(d);
     std::vector<Real>& distance = wall_distance_[static_cast<std::size_t>(d)];
-    distance.assign(static_cast<std::size_t>(axis.n + kRealLanes), kNone);  // whole registers
+    distance.assign(static_cast<std::size_t>(axis.n + kRealLanes), SolidDistance::kNone);  // whole registers
     for (int side = 0; side < 2; ++side) {
       if (!grid_.active(d) || !boundaries_.is_wall(2 * d + side)) continue;
       const double wall = side ? axis.face.back() : axis.face.front();
@@ -48,6 +47,7 @@ void GasFlow::run_turbulence(double dt, const Dilatation& dilatation) {
                       eddy_viscosity_.view().origin,
                       f1_.view().origin,
                       {wall_distance_[0].data(), wall_distance_[1].data(), wall_distance_[2].data()},
+                      solid_distance_.view(),
                       gas_,
                       axes(),
                       Real(options_.viscosity),
@@ -61,10 +61,12 @@ void GasFlow::run_turbulence(double dt, const Dilatation& dilatation) {
   if constexpr (Sst) boundaries_.extend(f1_);
 }
 
-void GasFlow::advance_turbulence(double dt, const Dilatation& dilatation) {
+void GasFlow::advance_turbulence(double dt, const Dilatation& dilatation, const CutCells& cut) {
   if (!turbulent()) return;
-  if (options_.turbulence == TurbulenceModel::k_omega_sst) run_turbulence<true, false>(dt, dilatation);
-  else if (options_.round_jet_correction) run_turbulence<false, true>(dt, dilatation);
+  if (options_.turbulence == TurbulenceModel::k_omega_sst) {
+    solid_distance_.measure(cut);
+    run_turbulence<true, false>(dt, dilatation);
+  } else if (options_.round_jet_correction) run_turbulence<false, true>(dt, dilatation);
   else run_turbulence<false, false>(dt, dilatation);
 }
 

@@ -67,7 +67,7 @@ void Solver::run_stages(double dt) {
     boundaries_.fill(w_);
     fluxes<P>(w_, HllcConvection{});
     wall_fluxes<P>();
-    if (options_.keep_ledger) add_to_ledger(stage.share * dt);
+    if (options_.keep_ledger) add_to_ledger(stage.share * dt, {});
     for_each_cell(grid_.range(),
                   UpdateKernel<P>{view_block<Real>(u_), view_block<Real>(next_), view_block<const Real>(w_),
                                   view_block<const Real>(start_), view_block<const Real>(previous),
@@ -82,7 +82,7 @@ void Solver::run_stages(double dt) {
 }
 
 void Solver::advance(double dt, SolidMask&) {
-  advance_turbulence(dt, {});
+  advance_turbulence(dt, {}, {});
   with_physics([&](auto physics) { run_stages<decltype(physics)>(dt); });
 }
 

@@ -100,6 +100,7 @@ struct TurbulenceKernel {
   Real* eddy_viscosity;
   Real* f1;                                  ///< blending function of SST, 1 near walls
   std::array<const Real*, 3> wall_distance;  ///< to the nearest wall across each axis, m
+  ConstFieldView solid_distance;             ///< SST: to the nearest solid near by, m
   GasConstants gas;
   std::array<AxisLengths, 3> axis;
   Real viscosity, dt;
@@ -153,6 +154,7 @@ struct TurbulenceKernel {
       using namespace k_omega_sst;
       Real d = wall_distance[0][i] < wall_distance[1][j] ? wall_distance[0][i] : wall_distance[1][j];
       d = wall_distance[2][k] < d ? wall_distance[2][k] : d;
+      d = solid_distance(i, j, k) < d ? solid_distance(i, j, k) : d;
       const Real nu = viscosity * inv, cross = cross_diffusion(p.e, gradient_product(i, j, k, o));
       const Real blending = k_omega_sst::f1(p.k, p.e, nu, d, cross);
       after =

@@ -3,7 +3,6 @@
 #include <cmath>
 
 #include "base/parallel.hpp"
-#include "flow/piso/forcing.hpp"
 #include "flow/stencil.hpp"
 #include "grid/faces.hpp"
 
@@ -121,32 +120,52 @@ void Acoustic::measure_faces(const Block& middle, Real dt) {
   sweep(std::integral_constant<int, 2>{});
 }
 
-/// Faces of solid cells: the plain mean of the two cells, with what the pressure makes of the fluid's one
-/// within half a step. Between two cells of a solid its rigid velocity, whatever the pressure: gas must not
-/// gather in a cell whose pressure no cell of the fluid feels.
-void Acoustic::meet_solids(const Block& middle, Real dt, const SolidMask& solids, const Field& inside_solid) {
-  using Cell = std::array<int, 3>;
-  const auto w = view_block<const Real>(middle);
-  const ConstFieldView inside = inside_solid.view();
-  const auto velocity = [&](int d, const Cell& at) {
-    const std::ptrdiff_t o = w.offset(at[0], at[1], at[2]);
-    const Real gradient =
-        cell_gradient(w.origin[kP] + o, stride(inside, d), grid_.metrics(d), at[static_cast<std::size_t>(d)]);
-    return w.at(kU + d, o) - Real(0.5) * dt * (1 - inside(at[0], at[1], at[2])) * gradient / w.at(kRho, o);
-  };
-  for_each_face_of_solids(
-      grid_, solids,
-      [&](const SolidCell& c, int d, const Cell& below, const Cell& above, const Cell& beyond) {
-        const auto axis = static_cast<std::size_t>(d);
-        Real& q = velocity_[axis](above[0], above[1], above[2]);
-        if (inside(beyond[0], beyond[1], beyond[2]) > 0) {
-          q = c.solid[axis];
-          conductance_[axis](above[0], above[1], above[2]) = 0;
-        } else {
-          const Real weight = grid_.metrics(d).weight[above[axis]];
-          q = weight * velocity(d, below) + (1 - weight) * velocity(d, above);
-        }
-      });
+/// velocity_ becomes the volume flow over the whole area of a face, the solid's through the closed part, and
+/// conductance_ that of the open part.
+void Acoustic::close_faces(const CutCells& cut) {
+  open_.resize(cut.faces.size());
+  for_each_index(static_cast<int>(cut.faces.size()), [&](int n) {
+    const CutFace& f = cut.faces[static_cast<std::size_t>(n)];
+    Real& q = velocity_[static_cast<std::size_t>(f.d)](f.i, f.j, f.k);
+    Real& conductance = conductance_[static_cast<std::size_t>(f.d)](f.i, f.j, f.k);
+    open_[static_cast<std::size_t>(n)] = {q, conductance};
+    q += f.closed * (f.velocity - q);
+    conductance *= 1 - f.closed;
+  });
+}
+
+void Acoustic::reopen_faces(const CutCells& cut) {
+  for_each_index(static_cast<int>(cut.faces.size()), [&](int n) {
+    const CutFace& f = cut.faces[static_cast<std::size_t>(n)];
+    const OpenFace& open = open_[static_cast<std::size_t>(n)];
+    const bool closed = f.closed >= Real(1);
+    velocity_[static_cast<std::size_t>(f.d)](f.i, f.j, f.k) = closed ? f.velocity : open.velocity;
+    conductance_[static_cast<std::size_t>(f.d)](f.i, f.j, f.k) = closed ? Real(0) : open.conductance;
+  });
+}
+
+/// Only the fluid of a cell is compressed; in solids nothing is, and what their faces carry is round-off.
+void Acoustic::leave_to_fluid(const CutCells& cut, const Block& middle, Real dt) {
+  const ConstFieldView p = middle[kP].view();
+  for_each_index(static_cast<int>(cut.cells.size()), [&](int n) {
+    const CutCell& c = cut.cells[static_cast<std::size_t>(n)];
+    if (c.carrier < 0) {
+      residual_(c.i, c.j, c.k) = 0;
+      return;
+    }
+    const Real stiffness = gas_.gamma * gas_.reference_pressure + (gas_.gamma - 1) * p(c.i, c.j, c.k);
+    Real sum = c.fluid * static_cast<Real>(grid_.volume(c.i, c.j, c.k)) / (dt * stiffness);
+    for (int d = 0; d < 3; ++d) {
+      if (!grid_.active(d)) continue;
+      const Real* lower = &conductance_[static_cast<std::size_t>(d)](c.i, c.j, c.k);
+      sum += lower[0] + lower[stride(p, d)];
+    }
+    diagonal_(c.i, c.j, c.k) = sum;
+  });
+  for_each_index(static_cast<int>(cut.ghosts.size()), [&](int n) {
+    const GhostCell& g = cut.ghosts[static_cast<std::size_t>(n)];
+    if (cut.index(g.i, g.j, g.k) < 0) residual_(g.i, g.j, g.k) = 0;
+  });
 }
 
 template <class Visit>
@@ -294,20 +313,24 @@ void Acoustic::correct_faces() {
   sweep(std::integral_constant<int, 2>{});
 }
 
-void Acoustic::solve(const Boundaries& boundaries, const Block& middle, double dt, const SolidMask& solids,
-                     const Field& inside_solid) {
+void Acoustic::solve(const Boundaries& boundaries, const Block& middle, double dt, const CutCells& cut) {
   measure_faces(middle, Real(dt));
-  meet_solids(middle, Real(dt), solids, inside_solid);
   open_boundaries(boundaries, middle, Real(last_dt_ > 0.0 ? dt / last_dt_ : 0.0));
   last_dt_ = dt;
+  close_faces(cut);
+  const auto open = [&](const BoundaryCell& b) {
+    return cut.empty() ? Real(1) : 1 - cut.closed[static_cast<std::size_t>(b.axis)].view().origin[b.at];
+  };
   const double first = measure_cells(middle, Real(dt));
+  leave_to_fluid(cut, middle, Real(dt));
   for_each_boundary_cell(boundaries, [&](const BoundaryCell& b) {
-    diagonal_.view().origin[b.inside] += admittance_[b.face][b.cell];
+    diagonal_.view().origin[b.inside] += open(b) * admittance_[b.face][b.cell];
   });
   conjugate_gradients(boundaries, kTolerance * kTolerance * first);
+  reopen_faces(cut);
   correct_faces();
   for_each_boundary_cell(boundaries, [&](const BoundaryCell& b) {
-    const Real admittance = admittance_[b.face][b.cell];
+    const Real admittance = open(b) > 0 ? admittance_[b.face][b.cell] : Real(0);
     if (admittance == 0) return;
     velocity_[b.axis].view().origin[b.at] +=
         b.outward * admittance / b.area * change_.view().origin[b.inside];

@@ -1,7 +1,7 @@
 #pragma once
+#include "flow/cut_cells.hpp"
 #include "flow/godunov/boundary.hpp"
 #include "flow/godunov/geometry.hpp"
-#include "flow/solid_mask.hpp"
 
 namespace ejecta::piso {
 
@@ -21,11 +21,10 @@ class Acoustic {
  public:
   Acoustic(const Grid& grid, const GasConstants& gas);
 
-  /// `middle`: primitive variables with ghosts. Conjugate gradients from the change of the step before.
-  /// Faces of `solids` take the velocity of the cells beside them; `inside_solid`: forcing weight of every
-  /// cell. Allocates nothing.
-  void solve(const Boundaries& boundaries, const Block& middle, double dt, const SolidMask& solids,
-             const Field& inside_solid);
+  /// `middle`: primitive variables with ghosts. Conjugate gradients from the change of the step before. Of
+  /// faces that solids close in part `velocity` is that of the gas through their open part, of closed ones
+  /// that of the solid. Allocates nothing once it has met as many faces.
+  void solve(const Boundaries& boundaries, const Block& middle, double dt, const CutCells& cut);
 
   /// Ghost pressures of the finished middle on transmissive faces, such that the mean with the cell inside is
   /// the pressure of a wave that leaves.
@@ -50,7 +49,9 @@ class Acoustic {
   };
   static Real leaving(const BlockView<const Real>& w, const BoundaryCell& b, Real impedance);
   void measure_faces(const Block& middle, Real dt);
-  void meet_solids(const Block& middle, Real dt, const SolidMask& solids, const Field& inside_solid);
+  void close_faces(const CutCells& cut);
+  void leave_to_fluid(const CutCells& cut, const Block& middle, Real dt);
+  void reopen_faces(const CutCells& cut);
   /// `since`: this step over the one before
   void open_boundaries(const Boundaries& boundaries, const Block& middle, Real since);
   double measure_cells(const Block& middle, Real dt);
@@ -64,6 +65,10 @@ class Acoustic {
   Metrics metrics_[3];
   std::array<Field, 3> velocity_, conductance_;  ///< m/s; m3/s/Pa
   std::array<std::vector<Real>, 6> admittance_;  ///< per cell of a face of the box, m3/s/Pa
+  struct OpenFace {
+    Real velocity, conductance;
+  };
+  std::vector<OpenFace> open_;  ///< faces of the cut cells as if they were open
   Field diagonal_, change_, residual_, search_, product_;
   int iterations_ = 0;
   double last_dt_ = 0.0;  ///< s, of change_

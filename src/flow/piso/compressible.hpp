@@ -1,6 +1,7 @@
 #pragma once
 #include "flow/godunov/gas_flow.hpp"
 #include "flow/piso/acoustic.hpp"
+#include "flow/piso/cut_gas.hpp"
 #include "flow/piso/increment_smoother.hpp"
 
 namespace ejecta::piso {
@@ -27,24 +28,20 @@ class Compressible : public godunov::GasFlow {
   void advance(double dt, SolidMask& solids) override;
   std::vector<Field*> state() override;
   std::vector<double*> state_numbers() override;
+  void resume() override { cut_gas_.resume(); }
   int iterations() const { return acoustic_.iterations(); }  ///< of the last step's pressure equation
 
  private:
   template <class P>
-  void step(double dt, SolidMask& solids);
+  void step(double dt, CutCells& cut);
   void measure_growth();
-  void still_solids(const SolidMask& solids, Real dt);
-  void hold_solids(SolidMask& solids);
-  /// At which velocity forces worked on the cells of solids: on faces that move with the solid; between the
-  /// cells themselves, at that which they are given.
-  enum class WorkDone { by_solids, by_friction };
-  void move_solids(SolidMask& solids, WorkDone work_done);
   template <class P>
-  void smooth_increments(double dt);
+  void smooth_increments(double dt, const CutCells& cut);
+  const Field* eddies() const { return turbulent() ? &eddy_viscosity_ : nullptr; }
   Acoustic acoustic_;
+  CutGas cut_gas_;
   IncrementSmoother smoother_;
   godunov::Block start_, middle_;
-  Field inside_solid_;  ///< forcing weight of every cell in the last step, zero in the fluid
   bool had_solids_ = true;
   double growth_ = 0.0;  ///< 1/s, rate of GrowthKernel after the last step; negative: not known yet
   double largest_nu_ = 0.0, explicit_dt_ = 1e300;  ///< m2/s, s: of the last stable_dt()

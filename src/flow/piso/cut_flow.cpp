@@ -100,12 +100,11 @@ CutFlow::Gradient CutFlow::gradient(const CutCells& cut, const CutCell& carrier,
   return g;
 }
 
-/// Friction of the walls of a carrier over the time `step`, implicit; what it takes is counted `weight` times
-/// (kg).
 void CutFlow::rub(CutCells& cut, const CutCell& c, const WallTurbulence& turbulence, Real step, double weight,
                   std::array<Real, 3>& v) const {
   const Real volume = c.carried * static_cast<Real>(grid_.volume(c.i, c.j, c.k));
   const bool turbulent = turbulence.present();
+  const Real nu = turbulence.density.origin ? nu_ / turbulence.density(c.i, c.j, c.k) : nu_;
   const Real y =
       turbulent ? wall_distance(grid_, c) : std::max(c.distance, kNearest * width_along_normal(grid_, c));
   for_each_wall(cut, c, [&](const CutWall& wall, int w) {
@@ -114,9 +113,9 @@ void CutFlow::rub(CutCells& cut, const CutCell& c, const WallTurbulence& turbule
     Triple moved{v[0] - wall.velocity[0], v[1] - wall.velocity[1], v[2] - wall.velocity[2]};
     if (turbulent) moved = velocity_along(wall, v);
     const Real conductance =
-        turbulent ? wall_law::conductance(norm(moved), y, nu_, std::max(turbulence.k(c.i, c.j, c.k), Real(0)),
+        turbulent ? wall_law::conductance(norm(moved), y, nu, std::max(turbulence.k(c.i, c.j, c.k), Real(0)),
                                           wall.roughness)
-                  : nu_ / y;
+                  : nu / y;
     const Real rate = step * area * conductance / volume, part = rate / (Real(1) + rate);
     for (std::size_t e = 0; e < 3; ++e) {
       const Real change = part * moved[e];
@@ -183,11 +182,13 @@ void CutFlow::extend(const CutCells& cut, const std::array<FieldView, 3>& u,
     const Real through = dot(w, g.normal);
     Triple along;
     for (std::size_t e = 0; e < 3; ++e) along[e] = w[e] - through * g.normal[e];
-    Real linear = 1;  // 1: the profile from the image to the wall is linear; 0: the flow slips
+    const Real thinner = turbulence.density.origin ? Real(1) / from(turbulence.density) : Real(1);
+    const Real nu = thinner * nu_;
+    Real linear = nu > Real(0);  // 1: the profile from the image to the wall is linear; 0: the flow slips
     if (turbulence.present()) {
-      const Real k = std::max(from(turbulence.k), Real(0)), eddy = from(turbulence.eddy_viscosity);
+      const Real k = std::max(from(turbulence.k), Real(0)), eddy = thinner * from(turbulence.eddy_viscosity);
       linear =
-          std::min(wall_law::conductance(norm(along), g.image, nu_, k, 0) * g.image / (nu_ + eddy), linear);
+          std::min(wall_law::conductance(norm(along), g.image, nu, k, 0) * g.image / (nu + eddy), linear);
     }
     const Real tangential = Real(1) - linear * (Real(1) - g.ratio);
     for (std::size_t e = 0; e < 3; ++e) value[e] += g.ratio * through * g.normal[e] + tangential * along[e];

@@ -8,9 +8,10 @@
 
 namespace ejecta {
 
-/// What turbulence there is for the law of the wall; origins null: laminar flow.
+/// What turbulence there is for the law of the wall; origins null: laminar flow. With the density of a gas
+/// (kg/m3) viscosities are dynamic, Pa s; without, m2/s.
 struct WallTurbulence {
-  ConstFieldView k, eddy_viscosity;
+  ConstFieldView k, eddy_viscosity, density;
   bool present() const { return k.origin != nullptr; }
 };
 
@@ -24,6 +25,7 @@ struct WallTurbulence {
 /// else passes it.
 class CutFlow {
  public:
+  /// viscosity: m2/s, of a gas Pa s.
   CutFlow(const Grid& grid, double viscosity);
 
   /// New cells: volumes of fluid, and the momentum over density (m4/s) that their change puts into the sums.
@@ -60,8 +62,8 @@ class CutFlow {
                const std::array<FieldView, 3>& u);
   /// Adds dt density p A of every wall to cut.pressure_impulse.
   void press(CutCells& cut, ConstFieldView p, double dt_density) const;
-
- private:
+  /// Friction of the walls of a carrier over the time `step`, implicit in its velocity; what it takes is
+  /// counted `weight` times (density, kg/m3) in cut.friction_impulse.
   void rub(CutCells& cut, const CutCell& carrier, const WallTurbulence& turbulence, Real step, double weight,
            std::array<Real, 3>& velocity) const;
   /// Of p in a carrier: the mean over its open faces, exact where p is linear. What volume times gradient
@@ -72,6 +74,7 @@ class CutFlow {
   };
   Gradient gradient(const CutCells& cut, const CutCell& carrier, ConstFieldView p) const;
 
+ private:
   const Grid& grid_;
   Real nu_;
   Field carried_;

@@ -2,27 +2,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "flow/cut_geometry.hpp"
 #include "flow/cut_ghosts.hpp"
-#include "flow/turbulence/gradient.hpp"
-#include "flow/turbulence/sources.hpp"
 #include "flow/turbulence/two_equation.hpp"
-#include "flow/turbulence/wall_law.hpp"
+#include "flow/turbulence/wall_cell.hpp"
 
 namespace ejecta {
-namespace {
-
-/// Part of a carrier that its walls rule: all of it where a wall runs across the whole cell, little where one
-/// ends.
-Real wall_share(const Grid& grid, const CutCells& cut, const CutCell& c) {
-  Real area = 0;
-  for_each_wall(cut, c, [&](const CutWall& w, int) { area += norm(w.area); });
-  return std::min(area * width_along_normal(grid, c) / static_cast<Real>(grid.volume(c.i, c.j, c.k)),
-                  Real(1));
-}
-
-}  // namespace
-
 void TwoEquation::advance_cut_cells(const CutCells& cut, const std::array<ConstFieldView, 3>& u,
                                     const std::array<FieldView, 3>& q, Real dt, bool increments) {
   const bool sst = model_ == TwoEquationModel::k_omega_sst;
@@ -61,36 +45,10 @@ void TwoEquation::advance_cut_cells(const CutCells& cut, const std::array<ConstF
                          balance_s += through(second_, s0, sigma_s);
                        });
     const Real by_volume = dt / (c.carried * static_cast<Real>(grid_.volume(c.i, c.j, c.k)));
-    const Real y = wall_distance(grid_, c), share = wall_share(grid_, cut, c);
-    const std::array<Real, 3> v{u[0](c.i, c.j, c.k), u[1](c.i, c.j, c.k), u[2](c.i, c.j, c.k)};
-    Real area = 0, at_wall = 0;  // of the walls, and what their shear produces times that
-    for_each_wall(cut, c, [&](const CutWall& w, int) {
-      const Real a = norm(w.area), speed = norm(velocity_along(w, v));
-      const Real stress = speed * wall_law::conductance(speed, y, nu_, k0, w.roughness);
-      area += a;
-      if (wall_law::kQuarterCmu * std::sqrt(k0) * y > wall_law::kLaminar * nu_)
-        at_wall += a * stress * wall_law::kQuarterCmu * std::sqrt(k0) / (wall_law::kKappa * y);
-    });
-    const VelocityGradient gradient = gradient_row(grid_, u, c.j, c.k)(c.i);
-    const Real strain2 = strain_squared(gradient);
-    SourcePoint p{k0, s0, k0 - by_volume * balance_k, s0 - by_volume * balance_s, strain2, 0, nut, 0, 0, 0};
-    p.produced = (Real(1) - share) * nut * strain2 + (area > Real(0) ? share * at_wall / area : Real(0));
-    p.k_carried = std::max(p.k_carried, kMinimalK);
-    p.second_carried = std::max(p.second_carried, kMinimalSecond);
-    SourceResult r;
-    if (sst) {
-      p.f1 = f1_(c.i, c.j, c.k);
-      r = advance_sources<true, false>(p, dt);
-    } else {
-      r = advance_sources<false, false>(p, dt);
-    }
-    // Its wall rules the dissipation of a cell at the rate of its turbulence, at once where it runs all
-    // across.
-    const Real at_wall_s =
-        sst ? wall_law::specific_dissipation(r.k, y, nu_) : wall_law::dissipation(r.k, y, nu_);
-    const Real turnover = sst ? k_omega_sst::kBetaStar * at_wall_s : at_wall_s / r.k;
-    const Real pull = dt * turnover * share / std::max(Real(1) - share, Real(1e-6));
-    r.second = std::max((r.second + pull * at_wall_s) / (Real(1) + pull), kMinimalSecond);
+    SourcePoint p{k0, s0, k0 - by_volume * balance_k, s0 - by_volume * balance_s, 0, 0, nut, 0, 0, 0};
+    if (sst) p.f1 = f1_(c.i, c.j, c.k);
+    const SourceResult r = sst ? advance_wall_sources<true>(grid_, cut, c, u, p, nu_, dt)
+                               : advance_wall_sources<false>(grid_, cut, c, u, p, nu_, dt);
     k_new_(c.i, c.j, c.k) = increments ? r.k - k0 : r.k;
     second_new_(c.i, c.j, c.k) = increments ? r.second - s0 : r.second;
   });
@@ -108,7 +66,7 @@ void TwoEquation::finish_cut_cells(const CutCells& cut) {
     if (c.carrier != n) return;
     const Real k = k_(c.i, c.j, c.k), second = second_(c.i, c.j, c.k);
     nut_(c.i, c.j, c.k) =
-        std::min(sst ? k / second : k_epsilon::kCmu * k * k / second, kLargestViscosityRatio * nu_);
+        sst ? wall_eddy_viscosity<true>(k, second, nu_) : wall_eddy_viscosity<false>(k, second, nu_);
     if (sst) f1_(c.i, c.j, c.k) = Real(1);
   });
   for (Field* f : {&k_, &second_, &nut_, &f1_}) extend_to_ghosts(cut, f->view(), ghost_values_);

@@ -78,9 +78,6 @@ struct ScalarFlux {
   }
 };
 
-/// m: no wall in sight.
-constexpr Real kNoWall = Real(1e3);
-
 /// Where a transport step writes.
 struct ScalarOut {
   FieldView k, second, nut, f1;
@@ -163,8 +160,7 @@ TwoEquation::TwoEquation(const Grid& grid, TwoEquationModel model, bool round_je
       second_new_(grid.make_field()),
       nut_new_(grid.make_field()),
       f1_new_(grid.make_field()),
-      solid_distance_(grid.make_field()) {
-  solid_distance_.fill(kNoWall);
+      solid_distance_(grid) {
   initialise(kMinimalK, kMinimalSecond);
 }
 
@@ -182,7 +178,8 @@ void TwoEquation::measure_walls(const Boundaries& b) {
   for (int d = 0; d < 3; ++d) {
     const Metrics m = grid_.metrics(d);
     std::vector<Real>& distance = wall_distance_[static_cast<std::size_t>(d)];
-    distance.assign(static_cast<std::size_t>(grid_.n(d) + kRealLanes), kNoWall);  // whole registers
+    distance.assign(static_cast<std::size_t>(grid_.n(d) + kRealLanes),
+                    SolidDistance::kNone);  // whole registers
     for (int side = 0; side < 2; ++side) {
       const bool wall = grid_.active(d) && b.kind(2 * d + side) == BoundaryKind::wall;
       is_wall_[static_cast<std::size_t>(2 * d + side)] = wall;
@@ -192,17 +189,6 @@ void TwoEquation::measure_walls(const Boundaries& b) {
       }
     }
   }
-}
-
-void TwoEquation::measure_solids(const CutCells& cut) {
-  for (const auto& [i, j, k] : near_cells_) solid_distance_(i, j, k) = kNoWall;
-  near_cells_.clear();
-  const auto set = [&](int i, int j, int k, Real distance) {
-    Real& value = solid_distance_(i, j, k);
-    value = std::min(value, std::max(distance, Real(1e-9)));
-    near_cells_.push_back({i, j, k});
-  };
-  for (const NearCell& n : cut.near) set(n.i, n.j, n.k, n.distance);
 }
 
 /// Equilibrium values in the cells next to walls and the wall's eddy viscosity in the ghosts (Launder &
@@ -235,7 +221,7 @@ void TwoEquation::advance(const Boundaries& b, const std::array<ConstFieldView, 
                           const std::array<FieldView, 3>& q, const CutCells& cut, Real dt,
                           const IncrementSmoother* smoother) {
   if (wall_distance_[0].empty()) measure_walls(b);
-  if (model_ == TwoEquationModel::k_omega_sst) measure_solids(cut);
+  if (model_ == TwoEquationModel::k_omega_sst) solid_distance_.measure(cut);
   b.fill_turbulence(k_.view(), second_.view(), q);
   const std::array<ConstFieldView, 3> faces{q[0], q[1], q[2]};
   const ScalarOut out{k_new_.view(), second_new_.view(), nut_new_.view(), f1_new_.view(),

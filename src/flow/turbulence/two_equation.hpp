@@ -5,6 +5,7 @@
 #include "flow/boundary.hpp"
 #include "flow/cut_cells.hpp"
 #include "flow/piso/increment_smoother.hpp"
+#include "flow/turbulence/solid_distance.hpp"
 #include "grid/grid.hpp"
 
 namespace ejecta {
@@ -38,7 +39,6 @@ class TwoEquation {
                          const std::array<FieldView, 3>& q, Real dt, bool increments);
   void finish_cut_cells(const CutCells& cut);
   void measure_walls(const Boundaries& b);
-  void measure_solids(const CutCells& cut);
 
   const Grid& grid_;
   TwoEquationModel model_;
@@ -46,10 +46,9 @@ class TwoEquation {
   Real nu_;
   Field k_, second_, nut_, f1_, k_new_, second_new_, nut_new_, f1_new_;
   std::array<bool, 6> is_wall_{};
-  std::vector<Real> ghost_values_;              // scratch
-  Field solid_distance_;                        // SST: to the nearest body near by, m
-  std::vector<std::array<int, 3>> near_cells_;  // where it is not far
-  WallDistance wall_distance_;                  // to the nearest wall normal to each axis, m
+  std::vector<Real> ghost_values_;  // scratch
+  SolidDistance solid_distance_;    // SST
+  WallDistance wall_distance_;      // to the nearest wall normal to each axis, m
 };
 
 }  // namespace ejecta

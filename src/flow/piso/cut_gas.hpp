@@ -1,0 +1,76 @@
+#pragma once
+#include <array>
+#include <vector>
+
+#include "flow/godunov/gas_flow.hpp"
+#include "flow/piso/cut_flow.hpp"
+
+namespace ejecta::piso {
+
+/// What a step of gas does in the cells that solids cut, after the kernels have treated the whole grid as
+/// gas. A carrier balances mass, momentum and energy over the fluid of itself and of the small cells it
+/// carries,
+///
+///   V dU/dt = -sum A_f F - walls - U sum A_c u_s
+///
+/// A_f, A_c: open and closed parts of faces, F what passes the open ones, u_s the velocity of the solid; the
+/// last term leaves alone what moves with the solid. Walls take pressure, with its work, and friction
+/// (CutFlow). Small cells have the state of their carrier, and a pressure of their own: its difference to the
+/// carrier's is that of the pressure equation.
+class CutGas {
+ public:
+  /// viscosity: Pa s
+  CutGas(const Grid& grid, const godunov::GasConstants& gas, double viscosity);
+
+  /// New cells.
+  void begin(const CutCells& cut, const godunov::Block& w);
+  /// Part of a cell's volume whose gas it keeps: 1 in plain fluid, 0 in solids.
+  Field& carried() { return flow_.carried_field(); }
+  /// To be called after the carried field has been filled from elsewhere.
+  void resume() { flow_.resume(); }
+
+  /// Ghosts of the primitive variables, pressure apart, take what the stencils should see. eddy_viscosity:
+  /// Pa s; null: laminar.
+  void extend(const CutCells& cut, godunov::Block& w, const Field* eddy_viscosity);
+  void extend_pressure(const CutCells& cut, Field& p) { flow_.extend_pressure(cut, p.view()); }
+  /// Sources of turbulence in carriers over dt by the law of the wall; `before`: k and e before any sources.
+  void advance_turbulence(const CutCells& cut, bool sst, const godunov::Block& before, godunov::Block& w,
+                          godunov::Block& u, Field& eddy_viscosity, Field& f1, Real dt);
+
+  /// Remembers density and velocity of carriers, which the pressure's kernel would spoil, and what the
+  /// pressure of `middle` makes of them within half a step.
+  void keep(const CutCells& cut, const godunov::Block& middle);
+  void push(const CutCells& cut, godunov::Block& middle, Real half_dt) const;
+
+  /// Conserved values of carriers after dt: `flux` per area of the lower faces, from `start`; `middle` has
+  /// the pressure. Of ghosts nothing changes.
+  void balance(CutCells& cut, const std::array<godunov::Block, 3>& flux, const godunov::Block& start,
+               const godunov::Block& middle, const Field* eddy_viscosity, godunov::Block& u,
+               godunov::Block& w, Real dt);
+  /// Ghosts at the end of a step, from the primitive variables of the cells that keep theirs.
+  void settle(const CutCells& cut, const godunov::Block& middle, const Field* eddy_viscosity,
+              godunov::Block& u, godunov::Block& w);
+  /// What the last step of dt gave to the gas: walls by their pressure and friction, and by moving surfaces
+  /// its geometry, which begin() takes back as cells change.
+  struct Given {
+    godunov::Contents by_walls, displaced;
+  };
+  Given given(const CutCells& cut, const godunov::Block& start, double dt) const;
+
+ private:
+  WallTurbulence turbulence_of(const godunov::Block& w, const Field* eddy_viscosity) const;
+
+  const Grid& grid_;
+  godunov::GasConstants gas_;
+  Real viscosity_;
+  CutFlow flow_;
+  struct Kept {
+    Real rho;
+    std::array<Real, 3> u;
+  };
+  std::vector<Kept> kept_;     // of cut.cells
+  std::vector<double> swept_;  // of cut.cells: volume that moving solids clear in a carrier, m3/s
+  std::vector<Real> scratch_;
+};
+
+}  // namespace ejecta::piso
