@@ -96,6 +96,25 @@ TEST(BodiesInGas, MassMomentumAndEnergyOfAClosedBoxAndItsBodyAreKept) {
   EXPECT_NEAR(gained.energy, work + displaced.energy, exact * kAmbient);
 }
 
+TEST(BodiesInGas, ABodyThatLeavesTheBoxTakesNothingAlong) {
+  Tube t(make_axis({0, 1}, {16}, {2}), even_axis(0, 1, 16), make_axis({0, 1}, {16}, {0.5}), false, air());
+  const GasState far{kDensity, {10, 0, 0}, kAmbient};
+  for (int f = 0; f < 6; ++f) t.boundary(f, BoundaryType::free_stream, far);
+  t.fill([&](const Vec3&) { return far; });
+  t.solver.keep_ledger();
+  ResolvedCoupling coupling(t.grid, coupling_setup());
+  std::vector<Body> bodies{body_of(make_sphere(0.4), 1.0, {0.6, 0.5, 0.5}, {20, 0, 0})};
+  bodies[0].motion = Motion::prescribed;
+  SolidMask mask;
+  const double before = t.solver.total(godunov::kRho);
+  while (bodies[0].position.x() < 1.3) {
+    advance(t, coupling, bodies, mask, std::min(t.solver.stable_dt(0.8), 5e-4));
+  }
+  const godunov::BoundaryLedger& l = t.solver.ledger();
+  EXPECT_NEAR(t.solver.total(godunov::kRho), before + l.mass + l.displaced.mass,
+              sizeof(Real) == 8 ? 1e-13 : 1e-7);
+}
+
 /// A heavy piston across a tube with more pressure behind it than before it: simple waves on both sides until
 /// the ends answer (Landau & Lifshitz, section 101), p = p0 (1 -+ (gamma-1)/2 v/a0)^(2 gamma/(gamma-1)).
 struct Piston {

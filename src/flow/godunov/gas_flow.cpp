@@ -88,6 +88,14 @@ Contents GasFlow::contents() const {
 }
 
 void GasFlow::add_to_ledger(double seconds, const CutCells& cut) {
+  const auto closed = [&](int d, int face, const int(&at)[3]) {
+    if (cut.empty()) return 0.0;
+    int inside[3] = {at[0], at[1], at[2]};
+    inside[d] -= face % 2;
+    const int index = cut.index(inside[0], inside[1], inside[2]);
+    if (index > 0 && cut.cells[static_cast<std::size_t>(index - 1)].carrier < 0) return 1.0;  // locked in
+    return double(cut.closed[static_cast<std::size_t>(d)](at[0], at[1], at[2]));
+  };
   const double around = grid_.axisymmetric() ? 2.0 * std::numbers::pi : 1.0;
   const Metrics m[3]{grid_.metrics(0), grid_.metrics(1), grid_.metrics(2)};
   for (int face = 0; face < 6; ++face) {
@@ -96,10 +104,8 @@ void GasFlow::add_to_ledger(double seconds, const CutCells& cut) {
     const double inward = (face % 2 ? -1.0 : 1.0) * seconds * around;
     const Block& f = flux(d);
     for_each_face_cell(grid_, face, [&](std::size_t, const int(&at)[3]) {
-      const double closed =
-          cut.empty() ? 0.0 : double(cut.closed[static_cast<std::size_t>(d)](at[0], at[1], at[2]));
-      const double through = (1.0 - closed) * inward * double(m[d].area[at[d]]) * double(m[a].volume[at[a]]) *
-                             double(m[b].volume[at[b]]);
+      const double through = (1.0 - closed(d, face, at)) * inward * double(m[d].area[at[d]]) *
+                             double(m[a].volume[at[a]]) * double(m[b].volume[at[b]]);
       const auto value = [&](int c) {
         return through * double(f[static_cast<std::size_t>(c)](at[0], at[1], at[2]));
       };
