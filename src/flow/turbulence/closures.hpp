@@ -68,9 +68,6 @@ inline Real gamma(Real f1) {
   return blend(f1, one, two);
 }
 
-/// Cross-diffusion 2 sigma_w2 / omega grad k . grad omega, 1/s2.
-inline Real cross_diffusion(Real omega, Real gradients) { return Real(2) * kSigmaW2 * gradients / omega; }
-
 /// Blending function F1; d is the distance to the nearest wall, m.
 inline Real f1(Real k, Real omega, Real nu, Real d, Real cross) {
   const Real positive = std::max(cross, Real(1e-20));
