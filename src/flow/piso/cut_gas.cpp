@@ -35,7 +35,34 @@ void for_each_carrier(const CutCells& cut, const Visit& visit) {
 CutGas::CutGas(const Grid& grid, const GasConstants& gas, double viscosity)
     : grid_(grid), gas_(gas), viscosity_(static_cast<Real>(viscosity)), flow_(grid, viscosity) {}
 
-void CutGas::begin(const CutCells& cut, const Block& w) {
+/// Carriers of cells that had gas of their own before.
+void CutGas::merge(const CutCells& cut, Block& u, Block& w) {
+  const ConstFieldView before = flow_.carried();
+  for_each_carrier(cut, [&](std::size_t, const CutCell& c) {
+    std::array<double, kComponents> sum{};
+    double volume = 0.0;
+    int parts = 0;
+    for (int m = c.first_member; m < c.first_member + c.members; ++m) {
+      const CutCell& member = cut.cells[static_cast<std::size_t>(cut.members[static_cast<std::size_t>(m)])];
+      const double part =
+          double(before(member.i, member.j, member.k)) * grid_.volume(member.i, member.j, member.k);
+      if (part <= 0.0) continue;
+      ++parts;
+      volume += part;
+      for (std::size_t e = 0; e < kComponents; ++e)
+        sum[e] += part * double(u[e](member.i, member.j, member.k));
+    }
+    if (parts < 2) return;
+    for (std::size_t e = 0; e < kComponents; ++e) u[e](c.i, c.j, c.k) = static_cast<Real>(sum[e] / volume);
+    const Real rho = u[kRho](c.i, c.j, c.k);
+    for (std::size_t e = 0; e < kComponents; ++e)
+      w[e](c.i, c.j, c.k) = e == kRho ? rho : u[e](c.i, c.j, c.k) / rho;
+    w[kP](c.i, c.j, c.k) = (gas_.gamma - 1) * (u[kP](c.i, c.j, c.k) - kinetic(w, c.i, c.j, c.k));
+  });
+}
+
+void CutGas::begin(const CutCells& cut, Block& u, Block& w) {
+  merge(cut, u, w);
   flow_.begin(cut, {w[kU].view(), w[kV].view(), w[kW].view()});
   kept_.resize(cut.cells.size());
   swept_.assign(cut.cells.size(), 0.0);

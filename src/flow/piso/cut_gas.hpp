@@ -22,8 +22,8 @@ class CutGas {
   /// viscosity: Pa s
   CutGas(const Grid& grid, const godunov::GasConstants& gas, double viscosity);
 
-  /// New cells.
-  void begin(const CutCells& cut, const godunov::Block& w);
+  /// New cells. One that lost its gas to a carrier brings it along.
+  void begin(const CutCells& cut, godunov::Block& u, godunov::Block& w);
   /// Part of a cell's volume whose gas it keeps: 1 in plain fluid, 0 in solids.
   Field& carried() { return flow_.carried_field(); }
   /// To be called after the carried field has been filled from elsewhere.
@@ -58,6 +58,7 @@ class CutGas {
   Given given(const CutCells& cut, const godunov::Block& start, double dt) const;
 
  private:
+  void merge(const CutCells& cut, godunov::Block& u, godunov::Block& w);
   WallTurbulence turbulence_of(const godunov::Block& w, const Field* eddy_viscosity) const;
 
   const Grid& grid_;
