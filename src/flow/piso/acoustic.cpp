@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "base/parallel.hpp"
+#include "flow/piso/cut_flow.hpp"
 #include "flow/stencil.hpp"
 #include "grid/faces.hpp"
 
@@ -42,8 +43,7 @@ struct FaceKernel {
   }
 };
 
-/// Flow out of a cell, m3/s, and the diagonal of the equation of its change of pressure. Returns the square
-/// of the one over the other.
+/// Flow out of a cell, m3/s, and the diagonal of the equation of its change of pressure.
 struct CellKernel {
   Axes<FieldView> velocity, conductance;
   BlockView<const Real> middle;
@@ -52,7 +52,7 @@ struct CellKernel {
   Metrics metrics[3];
   Axes<bool> active;
   Real dt;
-  EJECTA_KERNEL Real operator()(int i, int j, int k) const {
+  EJECTA_KERNEL void operator()(int i, int j, int k) const {
     const std::ptrdiff_t o = middle.offset(i, j, k);
     const Real volume = metrics[0].volume[i] * metrics[1].volume[j] * metrics[2].volume[k];
     const Real stiffness = gas.gamma * gas.reference_pressure + (gas.gamma - 1) * middle.at(kP, o);
@@ -74,7 +74,6 @@ struct CellKernel {
     }
     rhs.origin[o] = -out;
     diagonal.origin[o] = sum;
-    return out * out / sum;
   }
 };
 
@@ -237,35 +236,50 @@ void Acoustic::open_boundaries(const Boundaries& boundaries, const Block& middle
   });
 }
 
-double Acoustic::measure_cells(const Block& middle, Real dt) {
-  return reduce_sum(grid_.range(),
-                    CellKernel{{velocity_[0].view(), velocity_[1].view(), velocity_[2].view()},
-                               {conductance_[0].view(), conductance_[1].view(), conductance_[2].view()},
-                               view_block<const Real>(middle),
-                               residual_.view(),
-                               diagonal_.view(),
-                               gas_,
-                               {metrics_[0], metrics_[1], metrics_[2]},
-                               {grid_.active(0), grid_.active(1), grid_.active(2)},
-                               dt});
+void Acoustic::measure_cells(const Block& middle, Real dt) {
+  for_each_cell(grid_.range(),
+                CellKernel{{velocity_[0].view(), velocity_[1].view(), velocity_[2].view()},
+                           {conductance_[0].view(), conductance_[1].view(), conductance_[2].view()},
+                           view_block<const Real>(middle),
+                           residual_.view(),
+                           diagonal_.view(),
+                           gas_,
+                           {metrics_[0], metrics_[1], metrics_[2]},
+                           {grid_.active(0), grid_.active(1), grid_.active(2)},
+                           dt});
 }
 
-void Acoustic::conjugate_gradients(const Boundaries& boundaries, double enough) {
+/// Small cells are one with their carrier in the equation: sums over cells are folded, and they share its
+/// change.
+void Acoustic::share(const CutCells& cut, FieldView f) const {
+  for (const CutCell& c : cut.cells) {
+    if (c.carrier < 0) continue;
+    const CutCell& carrier = cut.cells[static_cast<std::size_t>(c.carrier)];
+    f(c.i, c.j, c.k) = f(carrier.i, carrier.j, carrier.k);
+  }
+}
+
+void Acoustic::conjugate_gradients(const Boundaries& boundaries, const CutCells& cut, double enough) {
   const Matrix matrix{{conductance_[0].view(), conductance_[1].view(), conductance_[2].view()},
                       diagonal_.view(),
                       {grid_.active(0), grid_.active(1), grid_.active(2)}};
   const Range3 cells = grid_.range();
   const FieldView x = change_.view(), r = residual_.view(), s = search_.view(), y = product_.view();
   const ConstFieldView d = diagonal_.view();
+  share(cut, x);
   boundaries.extend(change_);
+  for_each_cell(
+      cells, [=](int i, int j, int k)
+                 __attribute__((always_inline)) { r(i, j, k) -= matrix.times(x.origin, i, j, k); });
+  CutFlow::fold(cut, r);
   double norm = reduce_sum(
       cells, [=](int i, int j, int k) __attribute__((always_inline)) {
-        const Real left = r(i, j, k) - matrix.times(x.origin, i, j, k);
-        r(i, j, k) = left;
+        const Real left = r(i, j, k);
         s(i, j, k) = left / d(i, j, k);
         return left * left / d(i, j, k);
       });
   for (iterations_ = 0; norm > enough && iterations_ < kMostIterations; ++iterations_) {
+    share(cut, s);
     boundaries.extend(search_);
     const double along = reduce_sum(
         cells, [=](int i, int j, int k) __attribute__((always_inline)) {
@@ -273,6 +287,7 @@ void Acoustic::conjugate_gradients(const Boundaries& boundaries, double enough) 
           y(i, j, k) = value;
           return value * s(i, j, k);
         });
+    CutFlow::fold(cut, y);
     const Real step = Real(norm / along);
     const double next = reduce_sum(
         cells, [=](int i, int j, int k) __attribute__((always_inline)) {
@@ -321,12 +336,17 @@ void Acoustic::solve(const Boundaries& boundaries, const Block& middle, double d
   const auto open = [&](const BoundaryCell& b) {
     return cut.empty() ? Real(1) : 1 - cut.closed[static_cast<std::size_t>(b.axis)].view().origin[b.at];
   };
-  const double first = measure_cells(middle, Real(dt));
+  measure_cells(middle, Real(dt));
   leave_to_fluid(cut, middle, Real(dt));
+  CutFlow::fold(cut, residual_.view());
+  const double first =
+      reduce_sum(grid_.range(), [r = residual_.view(), d = diagonal_.view()](int i, int j, int k) {
+        return r(i, j, k) * r(i, j, k) / d(i, j, k);
+      });
   for_each_boundary_cell(boundaries, [&](const BoundaryCell& b) {
     diagonal_.view().origin[b.inside] += open(b) * admittance_[b.face][b.cell];
   });
-  conjugate_gradients(boundaries, kTolerance * kTolerance * first);
+  conjugate_gradients(boundaries, cut, kTolerance * kTolerance * first);
   reopen_faces(cut);
   correct_faces();
   for_each_boundary_cell(boundaries, [&](const BoundaryCell& b) {

@@ -23,7 +23,8 @@ class Acoustic {
 
   /// `middle`: primitive variables with ghosts. Conjugate gradients from the change of the step before. Of
   /// faces that solids close in part `velocity` is that of the gas through their open part, of closed ones
-  /// that of the solid. Allocates nothing once it has met as many faces.
+  /// that of the solid. Small cells share the
+  /// change of their carrier. Allocates nothing once it has met as many faces.
   void solve(const Boundaries& boundaries, const Block& middle, double dt, const CutCells& cut);
 
   /// Ghost pressures of the finished middle on transmissive faces, such that the mean with the cell inside is
@@ -54,8 +55,9 @@ class Acoustic {
   void reopen_faces(const CutCells& cut);
   /// `since`: this step over the one before
   void open_boundaries(const Boundaries& boundaries, const Block& middle, Real since);
-  double measure_cells(const Block& middle, Real dt);
-  void conjugate_gradients(const Boundaries& boundaries, double enough);
+  void measure_cells(const Block& middle, Real dt);
+  void share(const CutCells& cut, FieldView f) const;
+  void conjugate_gradients(const Boundaries& boundaries, const CutCells& cut, double enough);
   void correct_faces();
   template <class Visit>
   void for_each_boundary_cell(const Boundaries& boundaries, const Visit& visit) const;

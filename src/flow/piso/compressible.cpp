@@ -216,7 +216,7 @@ void Compressible::step(double dt, CutCells& cut) {
     for (const CutCell& c : cut.cells) primitive(c.i, c.j, c.k);
     for (const GhostCell& g : cut.ghosts) primitive(g.i, g.j, g.k);
   }
-  cut_gas_.settle(cut, middle_, eddies(), u_, w_);
+  cut_gas_.settle(cut, eddies(), u_, w_);
 }
 
 void Compressible::advance(double dt, SolidMask& solids) {

@@ -229,7 +229,7 @@ void CutFlow::extend_to_small(const CutCells& cut, FieldView p) const {
   });
 }
 
-void CutFlow::fold(const CutCells& cut, FieldView f) const {
+void CutFlow::fold(const CutCells& cut, FieldView f) {
   for (std::size_t n = 0; n < cut.cells.size(); ++n) {
     const CutCell& c = cut.cells[n];
     if (c.carrier < 0 || c.carrier == static_cast<int>(n)) continue;

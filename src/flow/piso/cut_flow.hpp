@@ -47,7 +47,7 @@ class CutFlow {
   /// beyond it.
   void extend_to_small(const CutCells& cut, FieldView p) const;
   /// What small cells hold of a sum over cells goes to their carriers.
-  void fold(const CutCells& cut, FieldView f) const;
+  static void fold(const CutCells& cut, FieldView f);
   /// Cells in solids take the pressure of their donors: round-off would add up in them from step to step.
   void extend_to_solids(const CutCells& cut, FieldView p);
   /// q on the faces of cut cells, of what flows through their open parts; closed ones move with the solid.

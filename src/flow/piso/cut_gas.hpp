@@ -15,8 +15,7 @@ namespace ejecta::piso {
 ///
 /// A_f, A_c: open and closed parts of faces, F what passes the open ones, u_s the velocity of the solid; the
 /// last term leaves alone what moves with the solid. Walls take pressure, with its work, and friction
-/// (CutFlow). Small cells have the state of their carrier, and a pressure of their own: its difference to the
-/// carrier's is that of the pressure equation.
+/// (CutFlow). Small cells have the state of their carrier, and its pressure extended to them.
 class CutGas {
  public:
   /// viscosity: Pa s
@@ -32,7 +31,11 @@ class CutGas {
   /// Ghosts of the primitive variables, pressure apart, take what the stencils should see. eddy_viscosity:
   /// Pa s; null: laminar.
   void extend(const CutCells& cut, godunov::Block& w, const Field* eddy_viscosity);
-  void extend_pressure(const CutCells& cut, Field& p) { flow_.extend_pressure(cut, p.view()); }
+  /// The pressure of small cells and of solids.
+  void extend_pressure(const CutCells& cut, Field& p) {
+    flow_.extend_to_small(cut, p.view());
+    flow_.extend_to_solids(cut, p.view());
+  }
   /// Sources of turbulence in carriers over dt by the law of the wall; `before`: k and e before any sources.
   void advance_turbulence(const CutCells& cut, bool sst, const godunov::Block& before, godunov::Block& w,
                           godunov::Block& u, Field& eddy_viscosity, Field& f1, Real dt);
@@ -48,8 +51,7 @@ class CutGas {
                const godunov::Block& middle, const Field* eddy_viscosity, godunov::Block& u,
                godunov::Block& w, Real dt);
   /// Ghosts at the end of a step, from the primitive variables of the cells that keep theirs.
-  void settle(const CutCells& cut, const godunov::Block& middle, const Field* eddy_viscosity,
-              godunov::Block& u, godunov::Block& w);
+  void settle(const CutCells& cut, const Field* eddy_viscosity, godunov::Block& u, godunov::Block& w);
   /// What the last step of dt gave to the gas: walls by their pressure and friction, and by moving surfaces
   /// its geometry, which begin() takes back as cells change.
   struct Given {
