@@ -45,7 +45,7 @@ class CompressibleModel : public FlowModel {
     return step_of_boundaries(time, dt);
   }
   double courant(double dt) const override { return dt / solver_->stable_dt(1.0); }
-  void advance(double time, double dt, SolidMask& solids) override {
+  void advance(double time, double dt, CutCells& solids) override {
     const ScopedTimer timer(seconds_);
     move(time, dt, solids);
     started_ = 1.0;
@@ -206,7 +206,7 @@ class CompressibleModel : public FlowModel {
     if (jet_) let_in(time);
     if (formulas_.vary()) formulas_.apply(time, *solver_);
   }
-  void move(double time, double dt, SolidMask& solids) {
+  void move(double time, double dt, CutCells& solids) {
     set_boundaries(time + 0.5 * dt);
     solver_->advance(dt, solids);
   }
@@ -235,7 +235,7 @@ class CompressibleModel : public FlowModel {
     const BoundaryLedger ledger = solver_->ledger();
     double reached = 1e30;
     try {
-      SolidMask none;
+      CutCells none;
       move(time, dt, none);
       set_boundaries(time + dt);
       reached = dt / solver_->stable_dt(1.0);

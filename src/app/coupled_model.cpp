@@ -61,6 +61,8 @@ CouplingSetup CoupledModel::coupling_setup() const {
   s.fluid_density = flow_->density();
   s.gravity = case_.environment.gravity;
   s.body_force = case_.flow.body_force;
+  if (case_.flow.solver == FlowSolver::incompressible && case_.flow.turbulence == TurbulenceModel::laminar)
+    s.viscosity = case_.fluid.viscosity;
   for (std::size_t d = 0; d < 3; ++d)
     s.periodic[d] = grid_.active(int(d)) && case_.boundary[2 * d].type == BoundaryType::periodic;
   for (const Body& b : particles_.bodies())

@@ -6,7 +6,7 @@
 
 #include "base/vec.hpp"
 #include "case/case.hpp"
-#include "flow/solid_mask.hpp"
+#include "flow/cut_cells.hpp"
 #include "grid/grid.hpp"
 #include "output/report_data.hpp"
 #include "output/vtk_rectilinear.hpp"
@@ -19,7 +19,7 @@ class FlowModel {
   virtual ~FlowModel() = default;
   virtual double stable_dt(double time) = 0;
   virtual double courant(double dt) const = 0;
-  virtual void advance(double time, double dt, SolidMask& solids) = 0;
+  virtual void advance(double time, double dt, CutCells& solids) = 0;
 
   virtual double density() const = 0;  ///< kg/m3, of the fluid at rest
   virtual std::array<ConstFieldView, 3> velocity() const = 0;

@@ -51,9 +51,9 @@ class IncompressibleModel : public FlowModel {
     return step_of_boundaries(time, step_of_jet(time, std::min(dt, case_.run.time_step_max)));
   }
   double courant(double dt) const override { return flow_->courant(dt); }
-  void advance(double time, double dt, SolidMask& solids) override {
+  void advance(double time, double dt, CutCells& solids) override {
     flow_->advance(time, dt, solids);
-    cut_ = &solids.cut;
+    cut_ = &solids;
     last_time_ = time + dt;
     last_dt_ = dt;
     resumed_step_ = 0.0;

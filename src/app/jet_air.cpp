@@ -105,7 +105,7 @@ class IncompressibleAir : public JetAir {
   const Case& case_;
   const Grid& grid_;
   std::unique_ptr<FlowModel> flow_;
-  SolidMask no_bodies_;
+  CutCells no_bodies_;
   bool turbulent_ = false;
 };
 

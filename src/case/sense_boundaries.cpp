@@ -50,9 +50,9 @@ void check_face(const Case& c, std::size_t f, const std::string& key, Findings& 
   if (face.type == BoundaryType::wave_transmissive && is_incompressible(c))
     found.error(key + ".type", "there is no sound in incompressible flow for a wave-transmissive boundary",
                 "\"pressure-outlet\" or \"free-stream\"", "type = \"free-stream\"");
-  const bool holds_no_disc = face.type == BoundaryType::periodic ||
-                             (is_incompressible(c) && (face.type == BoundaryType::slip ||
-                                                       face.type == BoundaryType::symmetry));
+  const bool holds_no_disc =
+      face.type == BoundaryType::periodic ||
+      (is_incompressible(c) && (face.type == BoundaryType::slip || face.type == BoundaryType::symmetry));
   if (!face.patches.empty() && holds_no_disc)
     found.error(key + ".patch", fmt::format("a face of type \"{}\" holds no disc", word(face.type)),
                 "a face of type \"wall\", \"velocity\", \"free-stream\" or \"pressure-outlet\"",

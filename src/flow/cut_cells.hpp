@@ -31,6 +31,7 @@ struct CutWall {
   int body = 0;
   std::array<Real, 3> area{};      ///< m2, vector out of the fluid
   std::array<Real, 3> velocity{};  ///< of the surface, m/s
+  std::array<Real, 3> spin{};      ///< of the body, rad/s
   Vec3 point{0, 0, 0};             ///< where forces act, m
   Real roughness = 0;              ///< sand-grain height, m
 };

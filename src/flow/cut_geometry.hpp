@@ -66,11 +66,20 @@ inline Real wall_distance(const Grid& grid, const CutCell& carrier) {
   return Real(0.5) * (std::max(carrier.distance, Real(0)) + Real(0.5) * width_along_normal(grid, carrier));
 }
 
-/// The part of u - wall.velocity along the wall, m/s.
-inline std::array<Real, 3> velocity_along(const CutWall& wall, const std::array<Real, 3>& u) {
-  std::array<Real, 3> w{u[0] - wall.velocity[0], u[1] - wall.velocity[1], u[2] - wall.velocity[2]};
-  const Real through = dot(w, wall.area) / std::max(dot(wall.area, wall.area), Real(1e-30));
-  for (std::size_t e = 0; e < 3; ++e) w[e] -= through * wall.area[e];
+/// Velocity of the body that a wall belongs to, were it to reach out by y, m/s. What shears the fluid there
+/// is its velocity relative to this: a body that turns with the fluid around it feels nothing.
+inline std::array<Real, 3> carried_on(const CutWall& wall, Real y) {
+  const Real area = std::max(norm(wall.area), Real(1e-30));
+  const std::array<Real, 3>&s = wall.spin, &a = wall.area;  // out of the fluid
+  return {wall.velocity[0] - y / area * (s[1] * a[2] - s[2] * a[1]),
+          wall.velocity[1] - y / area * (s[2] * a[0] - s[0] * a[2]),
+          wall.velocity[2] - y / area * (s[0] * a[1] - s[1] * a[0])};
+}
+
+/// The part of w along a wall of this area.
+inline std::array<Real, 3> along_wall(std::array<Real, 3> w, const std::array<Real, 3>& area) {
+  const Real through = dot(w, area) / std::max(dot(area, area), Real(1e-30));
+  for (std::size_t e = 0; e < 3; ++e) w[e] -= through * area[e];
   return w;
 }
 

@@ -17,7 +17,6 @@ const Ball& nearest_ball(const std::vector<Ball>& balls, const Vec3& p) {
 
 double distance_balls(const std::vector<Ball>& balls, const Vec3& p) {
   double nearest = std::numeric_limits<double>::infinity();
-#pragma omp simd reduction(min : nearest)
   for (std::size_t n = 0; n < balls.size(); ++n) {
     const double x = p[0] - balls[n].centre[0], y = p[1] - balls[n].centre[1], z = p[2] - balls[n].centre[2];
     nearest = std::min(nearest, std::sqrt(x * x + y * y + z * z) - balls[n].radius);

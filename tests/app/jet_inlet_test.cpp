@@ -60,7 +60,7 @@ struct Blown {
   std::unique_ptr<FlowModel> flow;
   explicit Blown(const std::string& text)
       : c(parse_case(text, "box")), grid(make_grid(c)), flow(make_flow_model(c, grid)) {
-    SolidMask none;
+    CutCells none;
     double t = 0.0;
     while (t < kBlown) {
       const double dt = std::min(flow->stable_dt(t), kBlown - t);

@@ -46,7 +46,7 @@ struct Flow {
       : c(parse_case(text, "box")), grid(make_grid(c)), flow(make_flow_model(c, grid)) {}
   /// Blows until `end` in steps of at most `longest`.
   void advance(double end, double longest) {
-    SolidMask none;
+    CutCells none;
     for (double t = 0.0; t < end;) {
       const double dt = std::min({flow->stable_dt(t), longest, end - t});
       flow->advance(t, dt, none);

@@ -32,7 +32,7 @@ position = ["-5.3 mm", "0.2 mm", "19.1 mm"]
   Incompressible flow{grid, {}, {.density = 1000.0, .viscosity = 1e-5}};
   ResolvedCoupling coupling{grid, {.fluid_density = 1000.0}};
   Body ball = make_body(c.bodies[0], Materials(c), "");
-  SolidMask mask;
+  CutCells mask;
   double time = 0.0;
 
   Tank() {
@@ -97,11 +97,11 @@ TEST(TryStep, CellsInsideABodyDoNotShortenTheStep) {
   Tank still;
   still.ball.velocity = Vec3(0, 0, 0);
   still.coupling.map({&still.ball, 1}, still.mask);
-  for (GhostCell& g : still.mask.cut.ghosts)
+  for (GhostCell& g : still.mask.ghosts)
     if (g.donors == 0) g.solid = {1000, 0, 0};  // deep inside
   for (int n = 0; n < 2; ++n) still.flow.advance(1e-6 * n, 1e-6, still.mask);
   double deep = 0.0;
-  for (const GhostCell& g : still.mask.cut.ghosts)
+  for (const GhostCell& g : still.mask.ghosts)
     if (g.donors == 0) deep = std::max(deep, std::abs(double(still.flow.velocity()[0](g.i, g.j, g.k))));
   ASSERT_EQ(deep, 1000.0);
   EXPECT_LT(still.flow.courant(1.0), 0.5 * 1000.0 / 2e-3);

@@ -5,8 +5,8 @@
 #include "app/flow_model.hpp"
 #include "app/incompressible_states.hpp"
 #include "case/load.hpp"
+#include "flow/cut_cells.hpp"
 #include "flow/godunov/from_case.hpp"
-#include "flow/solid_mask.hpp"
 
 using namespace ejecta;
 
@@ -60,7 +60,7 @@ struct Channel {
   explicit Channel(const std::string& text)
       : c(parse_case(text, "channel")), grid(make_grid(c)), flow(make_flow_model(c, grid)) {}
   void advance(double until) {
-    SolidMask none;
+    CutCells none;
     for (constexpr double dt = 2.5e-4; time < until - 1e-9; time += dt) flow->advance(time, dt, none);
   }
   double k_at(const Vec3& x) const {

@@ -39,7 +39,7 @@ Body body_of(Shape shape, double mass, const Vec3& position, const Vec3& velocit
 }
 
 /// One step of the air and, if it is free, of the body.
-void advance(Tube& t, ResolvedCoupling& coupling, std::vector<Body>& bodies, SolidMask& mask, double dt) {
+void advance(Tube& t, ResolvedCoupling& coupling, std::vector<Body>& bodies, CutCells& mask, double dt) {
   std::vector<Load> loads(bodies.size());
   coupling.map(bodies, mask);
   t.solver.advance(dt, mask);
@@ -58,7 +58,7 @@ TEST(BodiesInGas, ABodyThatMovesWithTheWindLeavesItAlone) {
   ResolvedCoupling coupling(t.grid, coupling_setup());
   std::vector<Body> bodies{body_of(make_sphere(0.4), 100.0, {0.4, 0.6, 0.4}, u)};
   bodies[0].motion = Motion::prescribed;
-  SolidMask mask;
+  CutCells mask;
   for (int n = 0; n < 20; ++n) advance(t, coupling, bodies, mask, t.solver.stable_dt(0.8));
   const double tolerance = sizeof(Real) == 8 ? 1e-9 : 2e-3;  // float: round-off of 1e5 Pa
   for (int k = 0; k < 20; ++k)
@@ -81,7 +81,7 @@ TEST(BodiesInGas, MassMomentumAndEnergyOfAClosedBoxAndItsBodyAreKept) {
   std::vector<Body> bodies{body_of(make_box({0.4, 0.3, 0.4}), 1.0, {0.5, 0.5, 0.5}, {5, 0, -5})};
   bodies[0].motion = Motion::prescribed;
   t.solver.keep_ledger();
-  SolidMask mask;
+  CutCells mask;
   advance(t, coupling, bodies, mask, t.solver.stable_dt(0.8));  // the body's own volume of gas is gone
   const godunov::Contents start = t.solver.contents();
   const godunov::BoundaryLedger before = t.solver.ledger();
@@ -106,7 +106,7 @@ TEST(BodiesInGas, ABodyThatLeavesTheBoxTakesNothingAlong) {
   ResolvedCoupling coupling(t.grid, coupling_setup());
   std::vector<Body> bodies{body_of(make_sphere(0.4), 1.0, {0.6, 0.5, 0.5}, {20, 0, 0})};
   bodies[0].motion = Motion::prescribed;
-  SolidMask mask;
+  CutCells mask;
   const double before = t.solver.total(godunov::kRho);
   while (bodies[0].position.x() < 1.3) {
     advance(t, coupling, bodies, mask, std::min(t.solver.stable_dt(0.8), 5e-4));
@@ -145,7 +145,7 @@ struct Piston {
     });
     ResolvedCoupling coupling(t.grid, coupling_setup());
     std::vector<Body> bodies{body_of(make_box({0.0625, 1, 1}), mass, {0, 0, 0}, {0, 0, 0})};
-    SolidMask mask;
+    CutCells mask;
     const int steps = 3 * cells;
     for (int n = 0; n < steps; ++n) advance(t, coupling, bodies, mask, time / steps);
     return bodies[0].velocity.x();
@@ -180,7 +180,7 @@ TEST(BodiesInGas, FrictionIsThatOfTheLawOfTheWallAtTheDensityAround) {
   ResolvedCoupling coupling(t.grid, coupling_setup());
   std::vector<Body> bodies{body_of(make_box({16 * h, 16 * h, 4 * h}), 1.0, {4 * h, 4 * h, 8 * h}, {0, 0, 0})};
   bodies[0].motion = Motion::fixed;
-  SolidMask mask;
+  CutCells mask;
   advance(t, coupling, bodies, mask, 1e-7);
   const double conductance =
       double(wall_law::conductance(Real(speed), Real(0.5 * h), Real(viscosity / density), Real(k), Real(0)));
@@ -202,7 +202,7 @@ TEST(BodiesInGas, BodiesInContactGiveTheSameBitsForAnyNumberOfThreads) {
     ResolvedCoupling coupling(t.grid, coupling_setup());
     std::vector<Body> bodies{body_of(make_box({0.01, 0.01, 0.01}), 2.7e-3, {0.02, 0.02, 0.02}, {3, 1, 0}),
                              body_of(make_sphere(0.01), 1.4e-3, {0.03, 0.0213, 0.0207}, {0, 2, 1})};
-    SolidMask mask;
+    CutCells mask;
     set_thread_count(threads);
     for (int n = 0; n < 6; ++n) advance(t, coupling, bodies, mask, t.solver.stable_dt(0.8));
     return std::array<Vec3, 3>{bodies[0].velocity, bodies[1].velocity, t.solver.at(12, 8, 8).velocity};

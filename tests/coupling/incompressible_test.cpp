@@ -43,7 +43,7 @@ struct Bodies {
   std::vector<Body> bodies;
   Incompressible flow;
   ResolvedCoupling coupling;
-  SolidMask mask;
+  CutCells mask;
   std::vector<Load> loads;
   double time = 0.0;
 
@@ -151,7 +151,7 @@ TEST(BodiesInLiquid, MomentumOfAPeriodicBoxAndItsBodiesIsKept) {
     EXPECT_GT(moved, 0.01 * start.norm()) << "the bodies must have done something";
     // The two ends of the box see the same face cut by two images of a body: the same up to single precision.
     EXPECT_LT(b.lost(start), (kSingle ? 1e-4 : 1e-7) * moved);
-    EXPECT_LT(b.flow.largest_divergence(b.mask.cut), 2e-3);
+    EXPECT_LT(b.flow.largest_divergence(b.mask), 2e-3);
   }
 }
 
@@ -225,7 +225,7 @@ TEST(BodiesInLiquid, BodiesInContactGiveTheSameBitsForAnyNumberOfThreads) {
     Jet one(scene());
     one.run(8);
     int shared = 0;
-    for (const CutCell& c : one.mask.cut.cells) shared += c.walls > 1;
+    for (const CutCell& c : one.mask.cells) shared += c.walls > 1;
     EXPECT_GT(shared, 0) << "bodies must share cells";
     for (const int n : {2, 3, 4, 2, 2, 2, 2, 2}) {
       set_thread_count(n);
@@ -254,7 +254,7 @@ TEST(BodiesInLiquid, BodiesInContactKeepMomentumAsOneDoes) {
     const FlowLedger& l = jet.flow.ledger();
     const double given = std::abs(l.momentum_through_boundaries.z()) + l.impulse_on_solids.norm();
     EXPECT_LT(jet.lost(start), (kSingle ? 1e-4 : 1e-8) * given);
-    EXPECT_LT(jet.flow.largest_divergence(jet.mask.cut), 2e-3);
+    EXPECT_LT(jet.flow.largest_divergence(jet.mask), 2e-3);
     EXPECT_TRUE(jet.flow.finite());
     double fastest = 0.0;
     for (int c = 0; c < 3; ++c)

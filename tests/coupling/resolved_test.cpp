@@ -24,20 +24,20 @@ TEST(ResolvedCoupling, ForceIsWhatTheWallsTookAndTorqueItsMoment) {
   setup.gravity = {0, 0, -9.81};
   setup.body_force = {3, 0, 0};
   ResolvedCoupling coupling(grid, setup);
-  SolidMask mask;
+  CutCells mask;
   const std::vector<Body> bodies{body_of(make_sphere(0.6), {0.2, 0, 0}),
                                  body_of(make_box({0.5, 0.5, 0.5}), {-0.4, 0, 0})};
   coupling.map(bodies, mask);
-  ASSERT_EQ(mask.cut.pressure_impulse.size(), mask.cut.walls.size());
-  ASSERT_EQ(mask.cut.friction_impulse.size(), mask.cut.walls.size());
+  ASSERT_EQ(mask.pressure_impulse.size(), mask.walls.size());
+  ASSERT_EQ(mask.friction_impulse.size(), mask.walls.size());
   Vec3 torque = Vec3::Zero();
   int walls[2] = {0, 0};
-  for (std::size_t n = 0; n < mask.cut.walls.size(); ++n) {
-    const CutWall& w = mask.cut.walls[n];
-    ASSERT_EQ(mask.cut.pressure_impulse[n], Vec3::Zero()) << "nothing given yet";
+  for (std::size_t n = 0; n < mask.walls.size(); ++n) {
+    const CutWall& w = mask.walls[n];
+    ASSERT_EQ(mask.pressure_impulse[n], Vec3::Zero()) << "nothing given yet";
     ++walls[w.body];
-    mask.cut.pressure_impulse[n] = {0.0, 2e-6, 0.0};
-    mask.cut.friction_impulse[n] = {0.0, 0.0, -1e-6};
+    mask.pressure_impulse[n] = {0.0, 2e-6, 0.0};
+    mask.friction_impulse[n] = {0.0, 0.0, -1e-6};
     if (w.body == 0) torque += (w.point - bodies[0].position).cross(Vec3(0, 2e-3, -1e-3));
   }
   std::vector<Load> loads(2);
@@ -59,10 +59,10 @@ TEST(ResolvedCoupling, BodiesOutsideTheBoxAreLeftAlone) {
   setup.fluid_density = 1.2;
   setup.gravity = {0, 0, -9.81};
   ResolvedCoupling coupling(grid, setup);
-  SolidMask mask;
+  CutCells mask;
   const std::vector<Body> bodies{body_of(make_sphere(0.5), {3, 0, 0})};
   coupling.map(bodies, mask);
-  EXPECT_TRUE(mask.cut.empty());
+  EXPECT_TRUE(mask.empty());
   EXPECT_FALSE(coupling.any_inside(bodies));
   std::vector<Load> loads(1);
   coupling.collect(bodies, mask, 1e-3, loads);

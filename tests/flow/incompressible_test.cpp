@@ -35,7 +35,7 @@ struct JetBox {
   ResolvedCoupling coupling{grid, {}};
   std::vector<Body> bodies{
       Body{.name = "cube", .shape = make_box({7.5e-3, 7.5e-3, 7.5e-3}), .enters_at = {}}};
-  SolidMask solids;
+  CutCells solids;
   std::unique_ptr<Incompressible> flow;
   double time = 0.0;
 
@@ -99,8 +99,8 @@ TEST(Incompressible, GivesTheSameBitsForAnyNumberOfThreads) {
     set_thread_count(n);
     more.run(12);
     expect_same_bits(*one.flow, *more.flow);
-    EXPECT_EQ(one.solids.cut.pressure_impulse, more.solids.cut.pressure_impulse);
-    EXPECT_EQ(one.solids.cut.friction_impulse, more.solids.cut.friction_impulse);
+    EXPECT_EQ(one.solids.pressure_impulse, more.solids.pressure_impulse);
+    EXPECT_EQ(one.solids.friction_impulse, more.solids.friction_impulse);
   }
   set_thread_count(threads);
 }
@@ -124,12 +124,12 @@ TEST(Incompressible, IsFreeOfDivergenceAfterAStep) {
   JetBox empty, box;
   empty.bodies.clear();
   empty.run(10);
-  EXPECT_LT(empty.flow->largest_divergence(empty.solids.cut), kSingle ? 1e-5 : 1e-13);
+  EXPECT_LT(empty.flow->largest_divergence(empty.solids), kSingle ? 1e-5 : 1e-13);
   // What a correction leaves beside closed faces is met again in the next one: it must not add up.
   box.run(10);
-  EXPECT_LT(box.flow->largest_divergence(box.solids.cut), 1e-3);
+  EXPECT_LT(box.flow->largest_divergence(box.solids), 1e-3);
   box.run(40);
-  EXPECT_LT(box.flow->largest_divergence(box.solids.cut), 1e-3);
+  EXPECT_LT(box.flow->largest_divergence(box.solids), 1e-3);
 }
 
 TEST(Incompressible, AnOpenFaceWithAPrescribedVelocityIsAnInflow) {
@@ -175,7 +175,7 @@ TEST(Incompressible, KeepsStillAirStill) {
   Incompressible flow(box.grid, faces, setup);
   flow.turbulence()->initialise(1e-4, 10.0);
   flow.initialise([](const Vec3&) { return Vec3::Zero(); }, [](const Vec3&) { return 0.0; }, 0.0);
-  SolidMask none;
+  CutCells none;
   for (int n = 0; n < 5; ++n) flow.advance(n * 1e-4, 1e-4, none);
   EXPECT_EQ(flow.kinetic_energy(), 0.0);
 }
@@ -215,7 +215,7 @@ double taylor_green_error(int n) {
         return Vec3(-std::cos(x[0]) * std::sin(x[1]), std::sin(x[0]) * std::cos(x[1]), 0);
       },
       [](const Vec3& x) { return -0.25 * (std::cos(2 * x[0]) + std::cos(2 * x[1])); }, 0);
-  SolidMask none;
+  CutCells none;
   const int steps = n / 2;
   for (int s = 0; s < steps; ++s) flow.advance(double(s) / steps, 1.0 / steps, none);
   double sum = 0.0;

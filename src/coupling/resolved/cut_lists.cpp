@@ -128,7 +128,10 @@ void CutMap::add_cut_cell(std::span<const Record> records, CutCells& out) {
     const Vec3 x = grid_.centre(c.i, c.j, c.k) - of.shift;
     w.point = x - double(r.distance) * n;
     const Vec3 v = of.body->velocity_at(w.point);
-    for (int d = 0; d < 3; ++d) w.velocity[static_cast<std::size_t>(d)] = static_cast<Real>(v[d]);
+    for (int d = 0; d < 3; ++d) {
+      w.velocity[static_cast<std::size_t>(d)] = static_cast<Real>(v[d]);
+      w.spin[static_cast<std::size_t>(d)] = static_cast<Real>(of.body->angular_velocity[d]);
+    }
     const Vec3 area(w.area[0], w.area[1], w.area[2]);
     sum += area;
     total += area.norm();

@@ -9,13 +9,12 @@ namespace ejecta {
 ResolvedCoupling::ResolvedCoupling(const Grid& grid, CouplingSetup setup)
     : grid_(grid), setup_(std::move(setup)), cut_map_(grid, setup_.periodic) {}
 
-void ResolvedCoupling::map(std::span<const Body> bodies, SolidMask& mask) {
-  cut_map_.map(bodies, setup_.roughness, mask.cut);
+void ResolvedCoupling::map(std::span<const Body> bodies, CutCells& cut) {
+  cut_map_.map(bodies, setup_.roughness, cut);
 }
 
-void ResolvedCoupling::collect(std::span<const Body> bodies, const SolidMask& mask, double dt,
+void ResolvedCoupling::collect(std::span<const Body> bodies, const CutCells& cut, double dt,
                                std::span<Load> loads) {
-  const CutCells& cut = mask.cut;
   motion_.resize(bodies.size());
   parts_.assign(bodies.size(), {});
   for (Load& l : loads) l = Load{};
@@ -33,7 +32,10 @@ void ResolvedCoupling::collect(std::span<const Body> bodies, const SolidMask& ma
     const Body& body = bodies[b];
     const double displaced = setup_.fluid_density * body.shape.mass_properties().volume;
     loads[b].force = parts_[b].pressure + parts_[b].friction;
-    if (wetted_[b] > 0.0) loads[b].force += displaced * (setup_.body_force - setup_.gravity);
+    if (wetted_[b] > 0.0) {
+      loads[b].force += displaced * (setup_.body_force - setup_.gravity);
+      loads[b].torque -= 2.0 * setup_.viscosity * body.shape.mass_properties().volume * body.angular_velocity;
+    }
     Before& m = motion_[b];
     if (m.known && body.motion == Motion::free && wetted_[b] > 0.0) {
       const double lambda = displaced / (body.mass + displaced);

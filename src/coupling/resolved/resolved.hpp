@@ -5,7 +5,7 @@
 #include "coupling/resolved/cut_map.hpp"
 #include "dem/body.hpp"
 #include "dem/loads.hpp"
-#include "flow/solid_mask.hpp"
+#include "flow/cut_cells.hpp"
 #include "grid/grid.hpp"
 
 namespace ejecta {
@@ -16,6 +16,10 @@ struct CouplingSetup {
                0};  ///< acts on the fluid as well, hidden in its hydrostatic pressure: returns as buoyancy
   Vec3 body_force{0, 0,
                   0};  ///< m/s2 that drives the fluid like a gradient of pressure: acts on bodies by volume
+  /// Pa s, of a flow that leaves grad u^T out of its stress (laminar, incompressible): what walls take is
+  /// then mu du/dn without mu n x spin, which adds up to no force but to a torque of -2 mu V spin. 0: it is
+  /// counted.
+  double viscosity = 0.0;
   std::array<bool, 3> periodic{};
   std::vector<double> roughness;  ///< of every body, sand-grain height, m
 };
@@ -30,14 +34,14 @@ class ResolvedCoupling {
  public:
   ResolvedCoupling(const Grid& grid, CouplingSetup setup);
 
-  /// Fills mask.cut.
-  void map(std::span<const Body> bodies, SolidMask& mask);
+  /// Fills cut.
+  void map(std::span<const Body> bodies, CutCells& cut);
   /// Force and torque on every body over the last flow step of length dt: pressure and friction on its walls
   /// and buoyancy, averaged over the steps before with the weight of the displaced fluid against that of the
   /// body, lambda = rho V / (m + rho V): F += (1 - lambda) (F_now - F). The fluid answers an acceleration
   /// within the step that follows, so that for a body lighter than its added mass the plain force grows
   /// without bound from step to step; this one settles on the same value, and for ore in air lambda is 4e-4.
-  void collect(std::span<const Body> bodies, const SolidMask& mask, double dt, std::span<Load> loads);
+  void collect(std::span<const Body> bodies, const CutCells& cut, double dt, std::span<Load> loads);
 
   const std::vector<ForceParts>& parts() const { return parts_; }
   /// False once no body touches the box.

@@ -2,11 +2,11 @@
 #include <array>
 #include <vector>
 
+#include "flow/cut_cells.hpp"
 #include "flow/godunov/boundary.hpp"
 #include "flow/godunov/flux_kernel.hpp"
 #include "flow/godunov/geometry.hpp"
 #include "flow/godunov/turbulence_kernel.hpp"
-#include "flow/solid_mask.hpp"
 #include "flow/turbulence/solid_distance.hpp"
 #include "grid/faces.hpp"
 
@@ -74,7 +74,7 @@ class GasFlow {
   /// no number.
   virtual double stable_dt(double courant) = 0;
   /// One step, around `solids`.
-  virtual void advance(double dt, SolidMask& solids) = 0;
+  virtual void advance(double dt, CutCells& solids) = 0;
   /// One step without solids.
   void advance(double dt) { advance(dt, no_solids_); }
 
@@ -146,7 +146,7 @@ class GasFlow {
   SolidDistance solid_distance_;  ///< SST
   bool started_ = false;
   BoundaryLedger ledger_;
-  SolidMask no_solids_;
+  CutCells no_solids_;
 };
 
 template <int D, class P, class Convection>

@@ -81,7 +81,7 @@ void Solver::run_stages(double dt) {
   for (const Stage& stage : stages) run(stage, &stage == stages.data() ? start_ : u_);
 }
 
-void Solver::advance(double dt, SolidMask&) {
+void Solver::advance(double dt, CutCells&) {
   advance_turbulence(dt, {}, {});
   with_physics([&](auto physics) { run_stages<decltype(physics)>(dt); });
 }

@@ -12,7 +12,7 @@ class Solver : public GasFlow {
   /// courant / max over cells of sum over axes of (|u| + c)/h + 2 nu/h^2
   double stable_dt(double courant) override;
   using GasFlow::advance;
-  void advance(double dt, SolidMask& solids) override;  ///< knows no solids: there must be none
+  void advance(double dt, CutCells& solids) override;  ///< knows no solids: there must be none
 
  private:
   template <class P>

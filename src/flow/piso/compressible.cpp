@@ -219,8 +219,7 @@ void Compressible::step(double dt, CutCells& cut) {
   cut_gas_.settle(cut, eddies(), u_, w_);
 }
 
-void Compressible::advance(double dt, SolidMask& solids) {
-  CutCells& cut = solids.cut;
+void Compressible::advance(double dt, CutCells& cut) {
   const bool solids_are_booked = options_.keep_ledger && (!cut.empty() || had_solids_);
   had_solids_ = !cut.empty();
   const Contents before = solids_are_booked ? contents() : Contents{};

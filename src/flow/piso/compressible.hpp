@@ -25,7 +25,7 @@ class Compressible : public godunov::GasFlow {
   /// as acted in the last step, can add; laminar: and 2 nu/h^2
   double stable_dt(double courant) override;
   using GasFlow::advance;
-  void advance(double dt, SolidMask& solids) override;
+  void advance(double dt, CutCells& cut) override;
   std::vector<Field*> state() override;
   std::vector<double*> state_numbers() override;
   void resume() override { cut_gas_.resume(); }

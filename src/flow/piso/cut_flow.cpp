@@ -104,14 +104,17 @@ void CutFlow::rub(CutCells& cut, const CutCell& c, const WallTurbulence& turbule
                   std::array<Real, 3>& v) const {
   const Real volume = c.carried * static_cast<Real>(grid_.volume(c.i, c.j, c.k));
   const bool turbulent = turbulence.present();
+  // Laminar incompressible flow leaves grad u^T out of its stress, which no volume of fluid feels.
+  const bool full_stress = turbulent || turbulence.density.origin;
   const Real nu = turbulence.density.origin ? nu_ / turbulence.density(c.i, c.j, c.k) : nu_;
   const Real y =
       turbulent ? wall_distance(grid_, c) : std::max(c.distance, kNearest * width_along_normal(grid_, c));
   for_each_wall(cut, c, [&](const CutWall& wall, int w) {
     const Real area = norm(wall.area);
     if (area <= Real(0)) return;
-    Triple moved{v[0] - wall.velocity[0], v[1] - wall.velocity[1], v[2] - wall.velocity[2]};
-    if (turbulent) moved = velocity_along(wall, v);
+    const Triple solid = full_stress ? carried_on(wall, y) : wall.velocity;
+    Triple moved{v[0] - solid[0], v[1] - solid[1], v[2] - solid[2]};
+    if (turbulent) moved = along_wall(moved, wall.area);
     const Real conductance =
         turbulent ? wall_law::conductance(norm(moved), y, nu, std::max(turbulence.k(c.i, c.j, c.k), Real(0)),
                                           wall.roughness)

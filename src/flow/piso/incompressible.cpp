@@ -185,9 +185,8 @@ void Incompressible::correct(const CutCells& cut, Real dt) {
   std::swap(u_, u_star_);
 }
 
-void Incompressible::advance(double time, double dt, SolidMask& solids) {
+void Incompressible::advance(double time, double dt, CutCells& cut) {
   const Real h = static_cast<Real>(dt);
-  CutCells& cut = solids.cut;
   filter_time_ = static_cast<Real>(kFilter / std::max(courant(1.0), 1e-30));
   convection_ = -1.0;
   move_displaced(cut_flow_.begin(cut, std::as_const(*this).views(u_)));

@@ -5,12 +5,12 @@
 #include <optional>
 
 #include "flow/boundary.hpp"
+#include "flow/cut_cells.hpp"
 #include "flow/piso/cut_flow.hpp"
 #include "flow/piso/cut_pressure.hpp"
 #include "flow/piso/increment_smoother.hpp"
 #include "flow/piso/momentum.hpp"
 #include "flow/poisson/fast_diagonal.hpp"
-#include "flow/solid_mask.hpp"
 #include "flow/turbulence/two_equation.hpp"
 #include "grid/grid.hpp"
 
@@ -70,7 +70,7 @@ class Incompressible {
   /// The Courant number that a step without solids would reach; the flow stays as it is.
   double try_step(double time, double dt);
   double courant(double dt) const;
-  void advance(double time, double dt, SolidMask& solids);
+  void advance(double time, double dt, CutCells& cut);
 
   std::array<ConstFieldView, 3> velocity() const { return {u_[0].view(), u_[1].view(), u_[2].view()}; }
   const Field& velocity_field(int c) const { return u_[static_cast<std::size_t>(c)]; }

@@ -103,7 +103,7 @@ double Incompressible::try_step(double time, double dt) {
   for (const Field* f : state()) kept.push_back(*f);
   const FlowLedger ledger = ledger_;
   const FlowTimes times = times_;
-  SolidMask none;
+  CutCells none;
   advance(time, dt, none);
   const double reached = courant(dt);
   for (std::size_t c = 0; c < 3; ++c) std::swap(u_old_[c], u_[c]);

@@ -28,7 +28,9 @@ SourceResult advance_wall_sources(const Grid& grid, const CutCells& cut, const C
   const std::array<Real, 3> v{u[0](c.i, c.j, c.k), u[1](c.i, c.j, c.k), u[2](c.i, c.j, c.k)};
   Real area = 0, at_wall = 0;  // of the walls, and what their shear produces times that
   for_each_wall(cut, c, [&](const CutWall& w, int) {
-    const Real a = norm(w.area), speed = norm(velocity_along(w, v));
+    const std::array<Real, 3> solid = carried_on(w, y);
+    const Real a = norm(w.area),
+               speed = norm(along_wall({v[0] - solid[0], v[1] - solid[1], v[2] - solid[2]}, w.area));
     const Real stress = speed * wall_law::conductance(speed, y, nu, p.k, w.roughness);
     area += a;
     if (wall_law::kQuarterCmu * std::sqrt(p.k) * y > wall_law::kLaminar * nu)
