@@ -9,18 +9,22 @@
 /// What every operator of cut cells asks of them.
 namespace ejecta {
 
+using GridMetrics = std::array<Metrics, 3>;
+inline GridMetrics metrics_of(const Grid& grid) {
+  return {grid.metrics(0), grid.metrics(1), grid.metrics(2)};
+}
+
 /// Area of the lower d-face of cell `at`, m2.
-inline Real face_area_of(const Grid& grid, int d, const std::array<int, 3>& at) {
-  const Metrics m[3] = {grid.metrics(0), grid.metrics(1), grid.metrics(2)};
-  return d == 0   ? face_area<0>(m, at[0], at[1], at[2])
-         : d == 1 ? face_area<1>(m, at[0], at[1], at[2])
-                  : face_area<2>(m, at[0], at[1], at[2]);
+inline Real face_area_of(const GridMetrics& m, int d, const std::array<int, 3>& at) {
+  const std::size_t s = static_cast<std::size_t>(d), a = (s + 1) % 3, b = (s + 2) % 3;
+  return m[s].area[at[s]] * m[a].volume[at[a]] * m[b].volume[at[b]];
 }
 
 /// visit(member, d, face, neighbour, sign, open part, whole area) for the open faces of a carrier and of the
 /// cells it carries; sign: +1 where the face is the member's upper one.
 template <class Visit>
 void for_each_open_face(const Grid& grid, const CutCells& cut, const CutCell& carrier, const Visit& visit) {
+  const GridMetrics metrics = metrics_of(grid);
   for (int n = carrier.first_member; n < carrier.first_member + carrier.members; ++n) {
     const CutCell& c = cut.cells[static_cast<std::size_t>(cut.members[static_cast<std::size_t>(n)])];
     for (int side = 0; side < 6; ++side) {
@@ -31,7 +35,7 @@ void for_each_open_face(const Grid& grid, const CutCells& cut, const CutCell& ca
       beyond[static_cast<std::size_t>(d)] += up ? 1 : -1;
       const Real open = Real(1) - cut.closed[static_cast<std::size_t>(d)](face[0], face[1], face[2]);
       if (open > Real(0))
-        visit(c, d, face, beyond, up ? Real(1) : Real(-1), open, face_area_of(grid, d, face));
+        visit(c, d, face, beyond, up ? Real(1) : Real(-1), open, face_area_of(metrics, d, face));
     }
   }
 }

@@ -173,6 +173,49 @@ Vec3 CutFlow::predict(CutCells& cut, const MomentumTerms& t, const WallTurbulenc
   return total;
 }
 
+template <class Visit>
+void CutFlow::for_each_closed_end(const CutCells& cut, const Visit& visit) const {
+  const GridMetrics metrics = metrics_of(grid_);
+  const auto look = [&](int d, const Cell& face, Real closed) {
+    const int along = face[static_cast<std::size_t>(d)];
+    if (along == 0 || along == grid_.n(d))
+      visit(d, face, along == 0 ? 1.0 : -1.0, double(closed) * double(face_area_of(metrics, d, face)));
+  };
+  for (const CutFace& f : cut.faces) look(f.d, {f.i, f.j, f.k}, f.closed);
+  for (const CutCell& c : cut.cells) {
+    if (!c.locked) continue;
+    for (int side = 0; side < 6; ++side) {
+      const std::size_t d = static_cast<std::size_t>(side / 2);
+      Cell face{c.i, c.j, c.k};
+      face[d] += side % 2;
+      if (grid_.active(side / 2)) look(side / 2, face, Real(1) - cut.closed[d](face[0], face[1], face[2]));
+    }
+  }
+}
+
+BoundaryFlow CutFlow::through_closed(const CutCells& cut, const MomentumTerms& t) const {
+  BoundaryFlow sum;
+  for_each_closed_end(cut, [&](int d, const Cell& face, double sign, double area) {
+    const FaceMomentum at = momentum_at_face(grid_, t, d, face[0], face[1], face[2]);
+    const double q = double(t.face_velocity[static_cast<std::size_t>(d)](face[0], face[1], face[2]));
+    for (std::size_t e = 0; e < 3; ++e)
+      sum.momentum[int(e)] += sign * area * (q * double(at.carried[e]) - double(at.stress[e]));
+    sum.volume += sign * area * q;
+    sum.volume_in += std::max(sign * area * q, 0.0);
+  });
+  return sum;
+}
+
+Vec3 CutFlow::pressure_on_closed(const CutCells& cut, ConstFieldView p) const {
+  Vec3 sum{0, 0, 0};
+  for_each_closed_end(cut, [&](int d, const Cell& face, double sign, double area) {
+    const Real *here = &p(face[0], face[1], face[2]),
+               w = grid_.metrics(d).weight[face[static_cast<std::size_t>(d)]];
+    sum[d] += sign * area * double(w * here[-stride(p, d)] + (Real(1) - w) * here[0]);
+  });
+  return sum;
+}
+
 void CutFlow::extend(const CutCells& cut, const std::array<FieldView, 3>& u,
                      const WallTurbulence& turbulence) {
   for_each_index(static_cast<int>(cut.ghosts.size()), [&](int n) {
@@ -214,7 +257,8 @@ void CutFlow::extend_to_small(const CutCells& cut, FieldView p) const {
     const Cell from{carrier.i, carrier.j, carrier.k}, to{c.i, c.j, c.k};
     const Real here = p(from[0], from[1], from[2]);
     Real sum = here;
-    for (int d = 0; d < 3; ++d) {
+    const int apart = std::abs(from[0] - to[0]) + std::abs(from[1] - to[1]) + std::abs(from[2] - to[2]);
+    for (int d = 0; apart == 1 && d < 3; ++d) {
       const std::size_t s = static_cast<std::size_t>(d);
       if (from[s] == to[s]) continue;
       const Metrics m = grid_.metrics(d);

@@ -41,6 +41,9 @@ class CutFlow {
   /// cut.friction_impulse; of ghosts it says that nothing changes. Returns the momentum over density that the
   /// displaced fluid takes along, m4/s2.
   Vec3 predict(CutCells& cut, const MomentumTerms& terms, const WallTurbulence& turbulence, double weight);
+  /// What sums over the whole faces of the box count through the parts of them that solids close.
+  BoundaryFlow through_closed(const CutCells& cut, const MomentumTerms& terms) const;
+  Vec3 pressure_on_closed(const CutCells& cut, ConstFieldView p) const;  ///< m4/s2 for p over density
   /// Ghosts take what the stencils should see.
   void extend(const CutCells& cut, const std::array<FieldView, 3>& u, const WallTurbulence& turbulence);
   /// Small cells have no pressure of their own: they take that of their carrier, extended by the gradient
@@ -69,6 +72,10 @@ class CutFlow {
   /// Of p in a carrier: the mean over its open faces, exact where p is linear. What volume times gradient
   /// asks of the walls beyond the pressure of their cell makes up for the rest of it: m4/s2 for p over
   /// density.
+  /// visit(d, face, sign, closed area, m2) for the faces of the box, closed as a whole where fluid is locked
+  /// in; sign: +1 where the box lies above.
+  template <class Visit>
+  void for_each_closed_end(const CutCells& cut, const Visit& visit) const;
   struct Gradient {
     std::array<Real, 3> value, beyond;
   };

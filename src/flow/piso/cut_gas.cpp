@@ -73,9 +73,10 @@ void CutGas::begin(const CutCells& cut, Block& u, Block& w) {
     const int carrier = cut.cells[static_cast<std::size_t>(index - 1)].carrier;
     if (carrier >= 0) swept_[static_cast<std::size_t>(carrier)] += flow;
   };
+  const GridMetrics metrics = metrics_of(grid_);
   for (const CutFace& f : cut.faces) {
     const double flow =
-        double(f.closed) * double(face_area_of(grid_, f.d, {f.i, f.j, f.k})) * double(f.velocity);
+        double(f.closed) * double(face_area_of(metrics, f.d, {f.i, f.j, f.k})) * double(f.velocity);
     add(f.i, f.j, f.k, -flow);
     add(f.i - (f.d == 0), f.j - (f.d == 1), f.k - (f.d == 2), flow);
   }

@@ -31,7 +31,7 @@ void CutPressure::add_coupling(int d, std::array<int, 3> face, Real closed) {
   const int n = grid_.n(d);
   std::array<int, 3> low = face, high = face;
   --low[s];
-  Real strength = face_area_of(grid_, d, face) * grid_.metrics(d).inv_distance[face[s]];
+  Real strength = face_area_of(metrics_of(grid_), d, face) * grid_.metrics(d).inv_distance[face[s]];
   const bool first = face[s] == 0, last = face[s] == n;
   bool has_low = true, has_high = true;
   if (first || last) {

@@ -142,7 +142,8 @@ BoundaryFlow Incompressible::predict(double a, double b, double time, Real dt, C
   t.b = static_cast<Real>(b);
   t.dt = dt;
   t.increment_only = smoothing_;
-  const BoundaryFlow through = predict_momentum(grid_, t, boundary_sums_);
+  BoundaryFlow through = predict_momentum(grid_, t, boundary_sums_);
+  through -= cut_flow_.through_closed(cut, t);
   move_displaced(kStageWeight * double(dt) *
                  cut_flow_.predict(cut, t, wall_turbulence(), weight * setup_.density));
   for (int c = 0; smoothing_ && c < 3; ++c) smoother_.apply(u_star_[c].view(), {t.old[c], t.a, t.u[c], t.b});
@@ -195,21 +196,21 @@ void Incompressible::advance(double time, double dt, CutCells& cut) {
   smoothing_ = turbulence_ && dt > explicit_dt_;
   if (smoothing_) smoother_.prepare(0.5 * dt * largest_viscosity_, cut, cut_flow_.carried());
 
-  book_boundaries(predict(0.0, 1.0, time, h, cut, kStageWeight), dt);
+  book_boundaries(predict(0.0, 1.0, time, h, cut, kStageWeight), cut, dt);
   cut_flow_.extend(cut, views(u_star_), wall_turbulence());
   {
     ScopedTimer timer(times_.boundaries);
     boundaries_.update(time + dt);
   }
   correct(cut, h);
-  book_pressure(phi_.view(), kStageWeight, dt);
+  book_pressure(phi_.view(), cut, kStageWeight, dt);
   std::swap(u_old_, u_star_);  // correct() left the velocity of the step's beginning there
 
-  book_boundaries(predict(0.5, 0.5, time + dt, h, cut, 1.0), dt);
+  book_boundaries(predict(0.5, 0.5, time + dt, h, cut, 1.0), cut, dt);
   for (int n = 1; n < setup_.corrections; ++n) {
     cut_flow_.extend(cut, views(u_star_), wall_turbulence());
     correct(cut, h);
-    book_pressure(phi_.view(), 1.0, dt);
+    book_pressure(phi_.view(), cut, 1.0, dt);
     if (n + 1 < setup_.corrections) {
       std::swap(u_, u_star_);
       boundaries_.fill_pressure(p_.view(), views(q_), true);
@@ -230,18 +231,19 @@ void Incompressible::advance(double time, double dt, CutCells& cut) {
   }
 }
 
-void Incompressible::book_boundaries(const BoundaryFlow& through, double dt) {
+void Incompressible::book_boundaries(const BoundaryFlow& through, const CutCells& cut, double dt) {
   const double factor = kStageWeight * dt * setup_.density;
   ledger_.momentum_through_boundaries +=
       factor * (through.momentum + setup_.acceleration * (box_volume_ - cut_flow_.solid_volume()));
   ledger_.mass_through_boundaries += factor * through.volume;
   ledger_.mass_in += factor * through.volume_in;
-  book_pressure(p_.view(), kStageWeight, dt);
+  book_pressure(p_.view(), cut, kStageWeight, dt);
 }
 
-void Incompressible::book_pressure(ConstFieldView p, double weight, double dt) {
+void Incompressible::book_pressure(ConstFieldView p, const CutCells& cut, double weight, double dt) {
   ScopedTimer timer(times_.ledger);
-  ledger_.momentum_through_boundaries += weight * dt * setup_.density * boundary_pressure(grid_, p);
+  ledger_.momentum_through_boundaries +=
+      weight * dt * setup_.density * (boundary_pressure(grid_, p) - cut_flow_.pressure_on_closed(cut, p));
 }
 
 std::vector<Field*> Incompressible::state() {

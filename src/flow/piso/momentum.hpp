@@ -32,6 +32,12 @@ struct BoundaryFlow {
   Vec3 momentum{0, 0, 0};  ///< convection and viscous stress over density, m4/s2
   double volume = 0;       ///< net, m3/s
   double volume_in = 0;    ///< m3/s
+  BoundaryFlow& operator-=(const BoundaryFlow& o) {
+    momentum -= o.momentum;
+    volume -= o.volume;
+    volume_in -= o.volume_in;
+    return *this;
+  }
 };
 
 /// What passes a face along d, of every component: the value carried by the flow through it, m/s, and the
