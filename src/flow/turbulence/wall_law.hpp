@@ -9,16 +9,14 @@
 namespace ejecta::wall_law {
 
 inline constexpr Real kKappa = Real(0.41), kE = Real(9.8);
-inline constexpr Real kLaminar = Real(11.53);         ///< y+ where u+ = y+ meets the logarithm
 inline constexpr Real kQuarterCmu = Real(0.5477226);  ///< 0.09^(1/4)
 
 /// u+ at y+ of the viscous layer and the logarithm, joined where they meet; `rough` is the sand-grain height
-/// over nu/u_tau: ln(E y+ / (1 + 0.3 k_s+)) (Colebrook 1939, Grigson 1992), so that a smooth wall is k_s+ =
-/// 0.
+/// over nu/u_tau: E/(1 + 0.3 k_s+) (Colebrook 1939, Grigson 1992), so that a smooth wall is k_s+ = 0. The 1
+/// within the logarithm keeps it above 0 where grains leave no viscous layer; elsewhere it is lost in E y+.
 inline Real u_plus(Real y_plus, Real rough) {
   const Real e = kE / (Real(1) + Real(0.3) * rough);
-  const Real log = std::log(std::max(e * y_plus, Real(1.0001))) / kKappa;
-  return y_plus > kLaminar ? std::min(log, y_plus) : y_plus;
+  return std::min(y_plus, std::log1p(e * y_plus) / kKappa);
 }
 
 /// Friction velocity from the mean velocity alone.
@@ -36,7 +34,7 @@ inline Real conductance(Real u, Real y, Real nu, Real k, Real roughness) {
   const Real by_k = star / std::max(u_plus(y_star, star * roughness / nu), Real(1));
   const Real tau = friction_velocity(u, y, nu, roughness);
   const Real by_u = tau * tau / std::max(u, Real(1e-20));
-  return std::max({y_star > kLaminar ? by_k : Real(0), u > Real(1e-20) ? by_u : Real(0), nu / y});
+  return std::max({by_k, u > Real(1e-20) ? by_u : Real(0), nu / y});
 }
 
 /// Dissipation of k beside a wall where production balances it, m2/s3; inside the viscous layer its own
