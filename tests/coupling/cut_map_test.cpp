@@ -202,6 +202,18 @@ TEST(CutMap, FacesThatAPlaneCutsAreExact) {
   const Grid grid = graded(20);
   const Vec3 half(0.55, 0.5, 0.45), at(0.031, -0.017, 0.023);
   const CutCells cut = mapped(grid, {body_of(make_box(2 * half), at)});
+  /// Whether an edge of the box runs through a cell: its faces are closed where they lead nowhere.
+  const auto has_edge = [&](int i, int j, int k) {
+    const int index[3] = {i, j, k};
+    int axes = 0;
+    for (int e = 0; e < 3; ++e) {
+      const std::size_t n = static_cast<std::size_t>(std::clamp(index[e], 0, grid.n(e) - 1));
+      const double low = grid.axis(e).face[n], high = grid.axis(e).face[n + 1];
+      axes += (at[e] - half[e] > low && at[e] - half[e] < high) ||
+              (at[e] + half[e] > low && at[e] + half[e] < high);
+    }
+    return axes > 1;
+  };
   int seen = 0;
   for (int d = 0; d < 3; ++d)
     for (int k = 0; k < grid.nz(); ++k)
@@ -223,6 +235,7 @@ TEST(CutMap, FacesThatAPlaneCutsAreExact) {
             closed *= overlap(low, high, from, to);
           }
           if (planes != 1) continue;  // the corner of a box is no plane
+          if (has_edge(i, j, k) || has_edge(i - (d == 0), j - (d == 1), k - (d == 2))) continue;
           seen += planes && closed > 0.0;
           ASSERT_NEAR(cut.closed[static_cast<std::size_t>(d)](i, j, k), closed, 5e-3)
               << d << i << " " << j << " " << k;

@@ -43,8 +43,7 @@ void CutMap::collect_faces(CutCells& out) const {
       Vec3 x = grid_.centre(r.i, r.j, r.k);
       x[d] = coordinate(d, at[d] + upper);
       f.velocity = static_cast<Real>(region.body->velocity_at(x - region.shift)[d]);
-      face_parts_.push_back(
-          {((std::int64_t(f.k) * (grid_.ny() + 1) + f.j) * (grid_.nx() + 1) + f.i) * 3 + d, f});
+      face_parts_.push_back({face_key(f), f});
     }
   }
   if (used_ > 1)
@@ -99,6 +98,10 @@ void CutMap::add_cut_cell(std::span<const Record> records, CutCells& out) {
   for (int d = 0; d < 3; ++d) c.normal[static_cast<std::size_t>(d)] = static_cast<Real>(normal[d]);
   double solid = 0.0;
   for (const Record& r : records) solid += 1.0 - part_fluid(r);
+  double room = 1.0;
+  for (std::size_t d = 0; records.size() == 1 && nearest.edge && d < 3; ++d)
+    room = std::min(room, 1.0 - 0.5 * double(nearest.closed[2 * d] + nearest.closed[2 * d + 1]));
+  room_.push_back(static_cast<Real>(room));
   c.fluid = static_cast<Real>(std::max(1.0 - solid, 1e-4));
   c.first_wall = static_cast<int>(out.walls.size());
   const Metrics m[3] = {grid_.metrics(0), grid_.metrics(1), grid_.metrics(2)};
@@ -296,6 +299,87 @@ int CutMap::carrier_of(const CutCell& c, CutCells& out) const {
     index = static_cast<int>(out.cells.size());
   }
   return index - 1;
+}
+
+/// A small cell at an edge of a body: its faces may be open although a wall stands right behind them. What
+/// enters through a face that does not lead to its carrier has no more room than the cell: the rest of the
+/// face is closed, and is wall to the cell beyond. (An air stream turned round the edges of a box through
+/// such faces: its drag fell by half as its faces went from a face of the grid to just behind it.)
+void CutMap::close_dead_ends(CutCells& out) const {
+  struct Change {
+    std::int64_t key;
+    CutFace face;
+    int cell;  // the small one
+    std::array<int, 3> beyond;
+    Real sign;  // +1: the face is its upper one
+  };
+  std::vector<Change> changes;
+  const std::size_t cells = room_.size();
+  for (std::size_t n = 0; n < cells; ++n) {
+    const CutCell& c = out.cells[n];
+    if (room_[n] >= Real(1) || c.carrier < 0 || c.carrier == static_cast<int>(n)) continue;
+    for_each_neighbour(c, out, [&](int index, int side, const int* cell, double open) {
+      if (index < 0 || open <= double(room_[n])) return;
+      if (index > 0 && out.cells[static_cast<std::size_t>(index - 1)].carrier == c.carrier) return;
+      CutFace f;
+      f.d = side / 2;
+      f.i = c.i, f.j = c.j, f.k = c.k;
+      (f.d == 0 ? f.i : f.d == 1 ? f.j : f.k) += side % 2;
+      f.closed = Real(1) - room_[n];
+      f.velocity = out.walls[static_cast<std::size_t>(c.first_wall)].velocity[static_cast<std::size_t>(f.d)];
+      changes.push_back(
+          {face_key(f), f, static_cast<int>(n), {cell[0], cell[1], cell[2]}, side % 2 ? Real(1) : Real(-1)});
+    });
+  }
+  for (Change& change : changes) {
+    const CutFace& f = change.face;
+    Real& closed = out.closed[static_cast<std::size_t>(f.d)](f.i, f.j, f.k);
+    if (closed >= f.closed) continue;  // two small cells share it
+    const CutCell small = out.cells[static_cast<std::size_t>(change.cell)];
+    const int at[3] = {small.i, small.j, small.k};
+    const Real area =
+        (f.closed - closed) * static_cast<Real>(grid_.volume(small.i, small.j, small.k) /
+                                                grid_.axis(f.d).width[static_cast<std::size_t>(at[f.d])]);
+    CutWall wall = out.walls[static_cast<std::size_t>(small.first_wall)];
+    out.walls[static_cast<std::size_t>(small.first_wall)].area[static_cast<std::size_t>(f.d)] +=
+        change.sign * area;
+    wall.area = {};
+    wall.area[static_cast<std::size_t>(f.d)] = -change.sign * area;
+    int& index = out.index(change.beyond[0], change.beyond[1], change.beyond[2]);
+    if (index == 0) {  // plain fluid so far
+      CutCell plain;
+      plain.i = change.beyond[0], plain.j = change.beyond[1], plain.k = change.beyond[2];
+      plain.carrier = static_cast<int>(out.cells.size());
+      plain.distance = static_cast<Real>(
+          0.5 *
+          grid_.axis(f.d).width[static_cast<std::size_t>(change.beyond[static_cast<std::size_t>(f.d)])]);
+      plain.normal[static_cast<std::size_t>(f.d)] = change.sign;
+      out.cells.push_back(plain);
+      index = static_cast<int>(out.cells.size());
+    }
+    CutCell& beyond = out.cells[static_cast<std::size_t>(index - 1)];
+    wall.cell = index - 1;
+    if (beyond.walls == 0) {
+      beyond.first_wall = static_cast<int>(out.walls.size());
+      beyond.walls = 1;
+      out.walls.push_back(wall);
+    } else {
+      CutWall& first = out.walls[static_cast<std::size_t>(beyond.first_wall)];
+      for (std::size_t d = 0; d < 3; ++d) first.area[d] += wall.area[d];
+    }
+    const Real before = closed;
+    const auto close = [&](CutFace face) {
+      out.closed[static_cast<std::size_t>(f.d)](face.i, face.j, face.k) = f.closed;
+      if (before <= Real(0)) return out.faces.push_back(face);
+      for (CutFace& old : out.faces)
+        if (face_key(old) == face_key(face)) old.closed = f.closed;
+    };
+    close(f);
+    int& along = f.d == 0 ? change.face.i : f.d == 1 ? change.face.j : change.face.k;
+    if (along != 0 && along != grid_.n(f.d)) continue;
+    along = grid_.n(f.d) - along;  // a periodic face of the box stands twice
+    close(f);
+  }
 }
 
 void CutMap::list_members(CutCells& out) const {

@@ -12,6 +12,10 @@ namespace {
 constexpr int kMargin = 3;
 /// Widths of a cell within which distances are measured.
 constexpr double kBand = 2.8;
+/// How far the distances of a face's corners may be from those of a plane before an edge of the body is
+/// sought in it, and how nearly parallel (sine) its sides may be.
+constexpr float kSharp = 0.25f;
+constexpr double kParallel = 0.3;
 /// Open up to round-off.
 constexpr float kNothing = 1e-5f;
 
@@ -52,10 +56,12 @@ double root(double a, double b, const F& f) {
 }
 
 /// Fluid part of a unit square from its corners (0,0), (1,0), (1,1), (0,1), whether they are fluid, and the
-/// fluid part of the edges that follow them.
-float fluid_part(const std::array<bool, 4>& fluid, const std::array<float, 4>& edge) {
+/// fluid part of the edges that follow them. tip(x, y of where the surface is left, of where it is reached
+/// again) may put a further corner between both into the first pair.
+template <class Tip>
+float fluid_part(const std::array<bool, 4>& fluid, const std::array<float, 4>& edge, const Tip& tip) {
   constexpr float x[4] = {0, 1, 1, 0}, y[4] = {0, 0, 1, 1};
-  float px[8], py[8];
+  float px[10], py[10];
   int n = 0;
   for (int c = 0; c < 4; ++c) {
     const int next = (c + 1) % 4;
@@ -65,6 +71,16 @@ float fluid_part(const std::array<bool, 4>& fluid, const std::array<float, 4>& e
     const float t = fluid[s] ? edge[s] : 1.0f - edge[s];
     px[n] = x[c] + t * (x[next] - x[c]);
     py[n++] = y[c] + t * (y[next] - y[c]);
+    if (!fluid[s]) continue;
+    // The surface is entered here and left at the next cut edge.
+    for (int e = next; e != c; e = (e + 1) % 4) {
+      const std::size_t o = static_cast<std::size_t>(e), after = static_cast<std::size_t>((e + 1) % 4);
+      if (fluid[o] == fluid[after]) continue;
+      const float u = fluid[o] ? edge[o] : 1.0f - edge[o];
+      float tx = x[e] + u * (x[after] - x[e]), ty = y[e] + u * (y[after] - y[e]);
+      if (tip(px[n - 1], py[n - 1], tx, ty)) px[n] = tx, py[n++] = ty;
+      break;
+    }
   }
   float area = 0;
   for (int c = 0; c < n; ++c) area += px[c] * py[(c + 1) % n] - px[(c + 1) % n] * py[c];
@@ -172,11 +188,51 @@ void CutMap::cut_edges(const Region& r) {
   });
 }
 
+/// Whether the distances of the corners of a face along a and b, from node `at` on, are far from those of a
+/// plane.
+bool CutMap::sharp(const Region& r, std::size_t at, std::size_t a, std::size_t b) const {
+  const std::array<std::size_t, 3> step{1, static_cast<std::size_t>(r.n[0] + 1),
+                                        static_cast<std::size_t>((r.n[0] + 1) * (r.n[1] + 1))};
+  const auto d = [&](std::size_t up_a, std::size_t up_b) {
+    return r.node[at + up_a * step[a] + up_b * step[b]];
+  };
+  const float along = std::max({std::abs(d(1, 0) - d(0, 0)), std::abs(d(1, 1) - d(0, 1)),
+                                std::abs(d(0, 1) - d(0, 0)), std::abs(d(1, 1) - d(1, 0))});
+  return std::abs(d(0, 0) - d(1, 0) - d(0, 1) + d(1, 1)) > kSharp * along;
+}
+
+/// Where the tangents of the surface in the points 0 and 1 of a face (parts of its widths) meet: the edge of
+/// a body, which the line between both would cut off (Kobbelt et al. 2001). Into point 1; false where they
+/// are nearly parallel or meet outside.
+bool CutMap::find_tip(const Region& r, const std::array<int, 3>& node, std::size_t a, std::size_t b, float x0,
+                      float y0, float& x1, float& y1) const {
+  Vec3 low, size{0, 0, 0};
+  for (std::size_t d = 0; d < 3; ++d) low[int(d)] = coordinate(int(d), r.low[d] + node[d]);
+  for (const std::size_t d : {a, b}) size[int(d)] = coordinate(int(d), r.low[d] + node[d] + 1) - low[int(d)];
+  const auto normal = [&](float x, float y) {
+    Vec3 point = low - r.shift;
+    point[int(a)] += double(x) * size[int(a)];
+    point[int(b)] += double(y) * size[int(b)];
+    const Vec3 n = r.body->orientation * r.body->shape.gradient(r.body->to_body(point));
+    return Eigen::Vector2d(n[int(a)] * size[int(a)], n[int(b)] * size[int(b)]).normalized();
+  };
+  const Eigen::Vector2d n0 = normal(x0, y0), n1 = normal(x1, y1);
+  const double turn = n0.x() * n1.y() - n0.y() * n1.x();
+  if (!(std::abs(turn) > kParallel)) return false;
+  const double c0 = n0.x() * double(x0) + n0.y() * double(y0), c1 = n1.x() * double(x1) + n1.y() * double(y1);
+  const double x = (c0 * n1.y() - c1 * n0.y()) / turn, y = (n0.x() * c1 - n1.x() * c0) / turn;
+  if (!(x >= 0.0 && x <= 1.0 && y >= 0.0 && y <= 1.0)) return false;
+  x1 = static_cast<float>(x);
+  y1 = static_cast<float>(y);
+  return true;
+}
+
 /// Entry (i, j, k) of face_[d] is the lower d-face of cell (i, j, k), with the extent of the nodes.
 void CutMap::close_faces(const Region& r) {
   const int nx = r.n[0] + 1, ny = r.n[1] + 1, nz = r.n[2] + 1;
   const std::array<int, 3> extent{nx, ny, nz}, step{1, nx, nx * ny};
   for (auto& f : face_) f.resize(r.node.size());
+  for (auto& t : tip_) t.assign(r.node.size(), 0);
   for_each_index(nz, [&](int k) {
     for (int j = 0; j < ny; ++j)
       for (int i = 0; i < nx; ++i) {
@@ -189,10 +245,18 @@ void CutMap::close_faces(const Region& r) {
           const std::array<bool, 4> fluid{r.node[at] >= 0, r.node[at + sa] >= 0, r.node[at + sa + sb] >= 0,
                                           r.node[at + sb] >= 0};
           const int corners = fluid[0] + fluid[1] + fluid[2] + fluid[3];
-          face_[d][at] = corners == 4   ? 0.0f
-                         : corners == 0 ? 1.0f
-                                        : 1.0f - fluid_part(fluid, {edge_[a][at], edge_[b][at + sa],
-                                                                    edge_[a][at + sb], edge_[b][at]});
+          const auto tip = [&](float x0, float y0, float& x1, float& y1) {
+            tip_[d][at] = !(corners == 2 && fluid[0] == fluid[2]) && sharp(r, at, a, b) &&
+                          find_tip(r, {i, j, k}, a, b, x0, y0, x1, y1);
+            return tip_[d][at] != 0;
+          };
+          face_[d][at] =
+              corners == 4 ? 0.0f
+              : corners == 0
+                  ? 1.0f
+                  : 1.0f - fluid_part(fluid,
+                                      {edge_[a][at], edge_[b][at + sa], edge_[a][at + sb], edge_[b][at]},
+                                      tip);
         }
       }
   });
@@ -208,12 +272,13 @@ void CutMap::record(const Region& r, int region) {
     for (int j = 0; j < r.n[1]; ++j)
       for (int i = 0; i < r.n[0]; ++i) {
         const std::size_t at = static_cast<std::size_t>((k * ny + j) * nx + i);
-        Record c{r.low[0] + i, r.low[1] + j, r.low[2] + k, region, {}, 0};
+        Record c{r.low[0] + i, r.low[1] + j, r.low[2] + k, region, {}, 0, false};
         float most = 0;
         for (std::size_t d = 0; d < 3; ++d) {
           c.closed[2 * d] = face_[d][at];
           c.closed[2 * d + 1] = face_[d][at + step[d]];
           most = std::max({most, c.closed[2 * d], c.closed[2 * d + 1]});
+          c.edge = c.edge || tip_[d][at] || tip_[d][at + step[d]];
         }
         if (most < kNothing) continue;
         c.distance = r.distance[r.at(c.i, c.j, c.k)];
@@ -291,6 +356,7 @@ void CutMap::map(std::span<const Body> bodies, std::span<const double> roughness
   clear(out);
   records_.clear();
   ghost_region_.clear();
+  room_.clear();
   used_ = 0;
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     std::array<int, 3> images{};
@@ -320,6 +386,7 @@ void CutMap::map(std::span<const Body> bodies, std::span<const double> roughness
   collect_cells(out);
   lock_in(out);
   choose_carriers(out);
+  close_dead_ends(out);
   list_members(out);
   find_donors(out);
   list_near(out);

@@ -44,12 +44,16 @@ class CutMap {
     int i, j, k, region;
     std::array<float, 6> closed;
     float distance;
+    bool edge;  ///< whether an edge of the body runs through it
   };
 
   bool find_region(const Body& body, const Vec3& shift, Region& r) const;
   void measure(Region& r);
   void cut_edges(const Region& r);
   void close_faces(const Region& r);
+  bool sharp(const Region& r, std::size_t at, std::size_t a, std::size_t b) const;
+  bool find_tip(const Region& r, const std::array<int, 3>& node, std::size_t a, std::size_t b, float x0,
+                float y0, float& x1, float& y1) const;
   void record(const Region& r, int region);
   void collect_faces(CutCells& out) const;
   void collect_cells(CutCells& out);
@@ -60,6 +64,7 @@ class CutMap {
   void lock_in(CutCells& out) const;
   void choose_carriers(CutCells& out) const;
   int carrier_of(const CutCell& c, CutCells& out) const;
+  void close_dead_ends(CutCells& out) const;
   void list_members(CutCells& out) const;
   void find_donors(CutCells& out) const;
   void list_near(CutCells& out) const;
@@ -69,6 +74,9 @@ class CutMap {
   double part_fluid(const Record& r) const;
   Vec3 normal_at(const Region& r, int i, int j, int k) const;
   double width_along(const Vec3& normal, int i, int j, int k) const;
+  std::int64_t face_key(const CutFace& f) const {
+    return ((std::int64_t(f.k) * (grid_.ny() + 1) + f.j) * (grid_.nx() + 1) + f.i) * 3 + f.d;
+  }
   std::int64_t key(int i, int j, int k) const { return (std::int64_t(k) * grid_.ny() + j) * grid_.nx() + i; }
 
   const Grid& grid_;
@@ -77,9 +85,11 @@ class CutMap {
   int used_ = 0;                             // regions in use
   std::array<std::vector<float>, 3> edge_;   // fluid part of its edges
   std::array<std::vector<float>, 3> face_;   // closed part of its faces
+  std::array<std::vector<char>, 3> tip_;     // whether an edge of the body runs through them
   std::vector<std::vector<Record>> planes_;  // scratch, one list a plane
   std::vector<Record> records_;
   std::vector<int> ghost_region_;  // of every ghost of the map
+  std::vector<Real> room_;         // of the cells at an edge of a body: part open from side to side; others 1
   struct FacePart {
     std::int64_t key;
     CutFace face;

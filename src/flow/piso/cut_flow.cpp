@@ -299,7 +299,7 @@ void CutFlow::face_velocities(const CutCells& cut, const std::array<ConstFieldVi
     const CutCell& c = cut.cells[static_cast<std::size_t>(n)];
     if (c.carrier == n) gradient_[static_cast<std::size_t>(n)] = gradient(cut, c, p).value;
   });
-  // The pressure gradient that moved a cell; false where none did.
+  // The pressure gradient that moved a cell; false where none did of its own.
   const auto gradient_at = [&](const Cell& c, int d, Real& value) {
     const int index = cut.index(c[0], c[1], c[2]);
     if (index == 0) {
@@ -308,9 +308,8 @@ void CutFlow::face_velocities(const CutCells& cut, const std::array<ConstFieldVi
       return true;
     }
     if (index < 0) return false;
-    const int carrier = cut.cells[static_cast<std::size_t>(index - 1)].carrier;
-    if (carrier < 0) return false;
-    value = gradient_[static_cast<std::size_t>(carrier)][static_cast<std::size_t>(d)];
+    if (cut.cells[static_cast<std::size_t>(index - 1)].carrier != index - 1) return false;
+    value = gradient_[static_cast<std::size_t>(index - 1)][static_cast<std::size_t>(d)];
     return true;
   };
   const auto roughness = [&](int d, const Cell& face, Real& value) {

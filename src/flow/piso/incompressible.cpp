@@ -168,6 +168,7 @@ void Incompressible::correct(const CutCells& cut, Real dt) {
     boundaries_.fill_face_velocity(views(q_), views(u_star_), p_.view(), dt);
     cut_flow_.close(cut, views(q_));
     divergence(grid_, std::as_const(*this).views(q_), dt, phi_.view());
+    CutFlow::fold(cut, phi_.view());
     cut_flow_.reopen(cut, views(q_));
   }
   {
