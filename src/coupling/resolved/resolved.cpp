@@ -37,7 +37,8 @@ void ResolvedCoupling::collect(std::span<const Body> bodies, const CutCells& cut
       loads[b].torque -= 2.0 * setup_.viscosity * body.shape.mass_properties().volume * body.angular_velocity;
     }
     Before& m = motion_[b];
-    if (m.known && body.motion == Motion::free && wetted_[b] > 0.0) {
+    if (!m.known) m.push = Load{-body.mass * setup_.gravity, Vec3::Zero()};  // it was held
+    if (body.motion == Motion::free && wetted_[b] > 0.0) {
       const double lambda = displaced / (body.mass + displaced);
       loads[b].force += lambda * (m.push.force - loads[b].force);
       loads[b].torque += lambda * (m.push.torque - loads[b].torque);

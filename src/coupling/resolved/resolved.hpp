@@ -41,6 +41,7 @@ class ResolvedCoupling {
   /// body, lambda = rho V / (m + rho V): F += (1 - lambda) (F_now - F). The fluid answers an acceleration
   /// within the step that follows, so that for a body lighter than its added mass the plain force grows
   /// without bound from step to step; this one settles on the same value, and for ore in air lambda is 4e-4.
+  /// A body begins as if something had held it.
   void collect(std::span<const Body> bodies, const CutCells& cut, double dt, std::span<Load> loads);
 
   const std::vector<ForceParts>& parts() const { return parts_; }
