@@ -170,7 +170,8 @@ TEST(BodiesInLiquid, ABodyLeavesThroughAnOpenFaceWithWideCells) {
     if (n < 5) continue;  // the start takes the air along at once
     ASSERT_LT(b.loads[0].force.norm(), largest) << "at " << b.bodies[0].position.x() << " in step " << n;
   }
-  EXPECT_LT(b.lost(start), (kSingle ? 1e-5 : 1e-9) * b.flow.ledger().momentum_through_boundaries.norm());
+  // Parts of faces are known to single precision.
+  EXPECT_LT(b.lost(start), (kSingle ? 1e-5 : 1e-7) * b.flow.ledger().momentum_through_boundaries.norm());
 }
 
 /// A rock: the hull of points near a sphere.
