@@ -123,13 +123,13 @@ void CoupledModel::build_step() {
   if (coupling_)
     step_.push_back(
         {"map.bodies", "what bodies leave of cells and faces, and their walls", [this](double, double) {
-           if (air_) coupling_->map(particles_.bodies(), mask_);
+           if (air_) coupling_->map(particles_.bodies(), cut_);
          }});
   if (flow_)
     step_.push_back({"flow.advance", "one step of the fluid around the bodies (see flow.* below)",
                      [this](double time, double dt) {
                        if (!air_) return;
-                       flow_->advance(time, dt, mask_);
+                       flow_->advance(time, dt, cut_);
                        ++flow_steps_;
                      }});
   if (coupling_)
@@ -140,7 +140,7 @@ void CoupledModel::build_step() {
                          std::fill(loads_.begin(), loads_.end(), Load{});
                          return;
                        }
-                       coupling_->collect(particles_.bodies(), mask_, dt, loads_);
+                       coupling_->collect(particles_.bodies(), cut_, dt, loads_);
                        for (std::size_t b = 0; b < loads_.size(); ++b) impulse_[b] += dt * loads_[b].force;
                        if (time < case_.stream.average_from) return;
                        averaged_ += dt;

@@ -76,7 +76,7 @@ class CoupledModel {
   std::unique_ptr<FlowModel> flow_;
   Particles particles_;
   std::optional<ResolvedCoupling> coupling_;
-  CutCells mask_;
+  CutCells cut_;
   std::optional<Splitter> splitter_;
   std::vector<Operator> step_;
   std::vector<Load> loads_;

@@ -7,11 +7,6 @@
 namespace ejecta {
 namespace {
 
-const char* face_name(int face) {
-  static constexpr const char* names[] = {"x_min", "x_max", "y_min", "y_max", "z_min", "z_max"};
-  return names[face];
-}
-
 BoundaryState jet_state(const Grid& grid, const StillAir& air, const JetInlet& inlet, const Vec3& x,
                         double t) {
   const JetState jet = inlet.at(x, half_widths(grid, x), t);

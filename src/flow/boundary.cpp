@@ -237,17 +237,9 @@ void Boundaries::prescribe_face_velocity(std::array<FieldView, 3> q) const {
       }
     });
   }
-  for (int face = 0; face < 6; ++face) {
-    const int d = face / 2;
-    if (!grid_.active(d) || !(*this)[face].discs) continue;
-    const Plane& plane = planes_[static_cast<std::size_t>(face)];
-    for (int b = 0; b < plane.nb; ++b)
-      for (int a = 0; a < plane.na; ++a)
-        if (prescribed(face, a, b)) {
-          const auto [i, j, k] = on_face(face, a, b);
-          q[d](i, j, k) = at(face, a, b).velocity[static_cast<std::size_t>(d)];
-        }
-  }
+  for_each_prescribed([&q](int d, const std::array<int, 3>& f, const BoundaryState& state) {
+    q[static_cast<std::size_t>(d)](f[0], f[1], f[2]) = state.velocity[static_cast<std::size_t>(d)];
+  });
 }
 
 void Boundaries::fill_face_velocity(std::array<FieldView, 3> q, const std::array<FieldView, 3>& u_star,

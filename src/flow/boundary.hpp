@@ -44,7 +44,7 @@ class Boundaries {
   /// The same of a face of the grid; false inside the box.
   bool prescribed_on(int d, const std::array<int, 3>& face) const;
   bool discs() const;  ///< whether there may be such cells
-  /// visit(d, face of the grid) for all of them.
+  /// visit(d, face of the grid, its state) for all of them.
   template <class Visit>
   void for_each_prescribed(const Visit& visit) const {
     for (int face = 0; face < 6; ++face) {
@@ -53,7 +53,7 @@ class Boundaries {
       const Plane& plane = planes_[static_cast<std::size_t>(face)];
       for (int b = 0; b < plane.nb; ++b)
         for (int a = 0; a < plane.na; ++a)
-          if (prescribed(face, a, b)) visit(d, on_face(face, a, b));
+          if (prescribed(face, a, b)) visit(d, on_face(face, a, b), at(face, a, b));
     }
   }
 

@@ -78,6 +78,8 @@ struct CutCells {
   std::vector<Vec3> pressure_impulse, friction_impulse;
 
   bool empty() const { return cells.empty() && ghosts.empty(); }
+  /// Whether another cell carries the momentum of cells[n].
+  bool small(std::size_t n) const { return cells[n].carrier >= 0 && cells[n].carrier != static_cast<int>(n); }
 };
 
 }  // namespace ejecta

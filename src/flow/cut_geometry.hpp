@@ -40,6 +40,13 @@ void for_each_open_face(const Grid& grid, const CutCells& cut, const CutCell& ca
   }
 }
 
+/// visit(cell, its carrier) for the small cells, one after the other.
+template <class Visit>
+void for_each_small(const CutCells& cut, const Visit& visit) {
+  for (std::size_t n = 0; n < cut.cells.size(); ++n)
+    if (cut.small(n)) visit(cut.cells[n], cut.cells[static_cast<std::size_t>(cut.cells[n].carrier)]);
+}
+
 /// visit(wall, its index) for the walls of a carrier and of the cells it carries.
 template <class Visit>
 void for_each_wall(const CutCells& cut, const CutCell& carrier, const Visit& visit) {

@@ -99,8 +99,9 @@ void CutMap::add_cut_cell(std::span<const Record> records, CutCells& out) {
   double solid = 0.0;
   for (const Record& r : records) solid += 1.0 - part_fluid(r);
   double room = 1.0;
-  for (std::size_t d = 0; records.size() == 1 && nearest.edge && d < 3; ++d)
-    room = std::min(room, 1.0 - 0.5 * double(nearest.closed[2 * d] + nearest.closed[2 * d + 1]));
+  if (records.size() == 1 && nearest.edge)
+    for (std::size_t d = 0; d < 3; ++d)
+      room = std::min(room, 1.0 - 0.5 * double(nearest.closed[2 * d] + nearest.closed[2 * d + 1]));
   room_.push_back(static_cast<Real>(room));
   c.fluid = static_cast<Real>(std::max(1.0 - solid, 1e-4));
   c.first_wall = static_cast<int>(out.walls.size());
@@ -260,6 +261,16 @@ void CutMap::lock_in(CutCells& out) const {
   }
 }
 
+/// A cell of plain fluid becomes one that carries itself; returns its index.
+int CutMap::add_plain(const int (&at)[3], CutCells& out) const {
+  CutCell plain;
+  plain.i = at[0], plain.j = at[1], plain.k = at[2];
+  plain.carrier = static_cast<int>(out.cells.size());
+  out.cells.push_back(plain);
+  out.index(at[0], at[1], at[2]) = static_cast<int>(out.cells.size());
+  return plain.carrier;
+}
+
 /// The neighbour through an open face that lies most along the normal.
 int CutMap::carrier_of(const CutCell& c, CutCells& out) const {
   double best = 0.02;
@@ -282,23 +293,18 @@ int CutMap::carrier_of(const CutCell& c, CutCells& out) const {
     }
   }
   if (at[0] < 0) return -1;
-  int& index = out.index(at[0], at[1], at[2]);
-  if (index == 0) {  // plain fluid so far
-    CutCell plain;
-    plain.i = at[0], plain.j = at[1], plain.k = at[2];
-    plain.distance = c.distance;
-    plain.normal = c.normal;
-    plain.carrier = static_cast<int>(out.cells.size());
-    for (int r = 0; r < used_; ++r) {
-      const Region& region = regions_[static_cast<std::size_t>(r)];
-      if (!region.holds(at[0], at[1], at[2])) continue;
-      const float distance = region.distance[region.at(at[0], at[1], at[2])];
-      if (plain.distance == c.distance || distance < plain.distance) plain.distance = distance;
-    }
-    out.cells.push_back(plain);
-    index = static_cast<int>(out.cells.size());
+  if (const int index = out.index(at[0], at[1], at[2]); index != 0) return index - 1;
+  const int added = add_plain(at, out);
+  CutCell& plain = out.cells[static_cast<std::size_t>(added)];
+  plain.distance = c.distance;
+  plain.normal = c.normal;
+  for (int r = 0; r < used_; ++r) {
+    const Region& region = regions_[static_cast<std::size_t>(r)];
+    if (!region.holds(at[0], at[1], at[2])) continue;
+    const float distance = region.distance[region.at(at[0], at[1], at[2])];
+    if (plain.distance == c.distance || distance < plain.distance) plain.distance = distance;
   }
-  return index - 1;
+  return added;
 }
 
 /// A small cell at an edge of a body: its faces may be open although a wall stands right behind them. What
@@ -307,17 +313,15 @@ int CutMap::carrier_of(const CutCell& c, CutCells& out) const {
 /// such faces: its drag fell by half as its faces went from a face of the grid to just behind it.)
 void CutMap::close_dead_ends(CutCells& out) const {
   struct Change {
-    std::int64_t key;
     CutFace face;
     int cell;  // the small one
-    std::array<int, 3> beyond;
+    int beyond[3];
     Real sign;  // +1: the face is its upper one
   };
   std::vector<Change> changes;
-  const std::size_t cells = room_.size();
-  for (std::size_t n = 0; n < cells; ++n) {
+  for (std::size_t n = 0; n < room_.size(); ++n) {
     const CutCell& c = out.cells[n];
-    if (room_[n] >= Real(1) || c.carrier < 0 || c.carrier == static_cast<int>(n)) continue;
+    if (room_[n] >= Real(1) || !out.small(n)) continue;
     for_each_neighbour(c, out, [&](int index, int side, const int* cell, double open) {
       if (index < 0 || open <= double(room_[n])) return;
       if (index > 0 && out.cells[static_cast<std::size_t>(index - 1)].carrier == c.carrier) return;
@@ -327,8 +331,7 @@ void CutMap::close_dead_ends(CutCells& out) const {
       (f.d == 0 ? f.i : f.d == 1 ? f.j : f.k) += side % 2;
       f.closed = Real(1) - room_[n];
       f.velocity = out.walls[static_cast<std::size_t>(c.first_wall)].velocity[static_cast<std::size_t>(f.d)];
-      changes.push_back(
-          {face_key(f), f, static_cast<int>(n), {cell[0], cell[1], cell[2]}, side % 2 ? Real(1) : Real(-1)});
+      changes.push_back({f, static_cast<int>(n), {cell[0], cell[1], cell[2]}, side % 2 ? Real(1) : Real(-1)});
     });
   }
   for (Change& change : changes) {
@@ -345,20 +348,14 @@ void CutMap::close_dead_ends(CutCells& out) const {
         change.sign * area;
     wall.area = {};
     wall.area[static_cast<std::size_t>(f.d)] = -change.sign * area;
-    int& index = out.index(change.beyond[0], change.beyond[1], change.beyond[2]);
-    if (index == 0) {  // plain fluid so far
-      CutCell plain;
-      plain.i = change.beyond[0], plain.j = change.beyond[1], plain.k = change.beyond[2];
-      plain.carrier = static_cast<int>(out.cells.size());
-      plain.distance = static_cast<Real>(
-          0.5 *
-          grid_.axis(f.d).width[static_cast<std::size_t>(change.beyond[static_cast<std::size_t>(f.d)])]);
-      plain.normal[static_cast<std::size_t>(f.d)] = change.sign;
-      out.cells.push_back(plain);
-      index = static_cast<int>(out.cells.size());
+    const int index = out.index(change.beyond[0], change.beyond[1], change.beyond[2]);
+    wall.cell = index > 0 ? index - 1 : add_plain(change.beyond, out);
+    CutCell& beyond = out.cells[static_cast<std::size_t>(wall.cell)];
+    if (index == 0) {
+      beyond.distance =
+          static_cast<Real>(0.5 * grid_.axis(f.d).width[static_cast<std::size_t>(change.beyond[f.d])]);
+      beyond.normal[static_cast<std::size_t>(f.d)] = change.sign;
     }
-    CutCell& beyond = out.cells[static_cast<std::size_t>(index - 1)];
-    wall.cell = index - 1;
     if (beyond.walls == 0) {
       beyond.first_wall = static_cast<int>(out.walls.size());
       beyond.walls = 1;
@@ -367,19 +364,19 @@ void CutMap::close_dead_ends(CutCells& out) const {
       CutWall& first = out.walls[static_cast<std::size_t>(beyond.first_wall)];
       for (std::size_t d = 0; d < 3; ++d) first.area[d] += wall.area[d];
     }
-    const Real before = closed;
-    const auto close = [&](CutFace face) {
-      out.closed[static_cast<std::size_t>(f.d)](face.i, face.j, face.k) = f.closed;
-      if (before <= Real(0)) return out.faces.push_back(face);
-      for (CutFace& old : out.faces)
-        if (face_key(old) == face_key(face)) old.closed = f.closed;
+    const bool is_listed = closed > Real(0);
+    const auto close = [&] {
+      out.closed[static_cast<std::size_t>(f.d)](f.i, f.j, f.k) = f.closed;
+      if (!is_listed) out.faces.push_back(f);
     };
-    close(f);
+    close();
     int& along = f.d == 0 ? change.face.i : f.d == 1 ? change.face.j : change.face.k;
     if (along != 0 && along != grid_.n(f.d)) continue;
     along = grid_.n(f.d) - along;  // a periodic face of the box stands twice
-    close(f);
+    close();
   }
+  if (changes.empty()) return;
+  for (CutFace& f : out.faces) f.closed = out.closed[static_cast<std::size_t>(f.d)](f.i, f.j, f.k);
 }
 
 void CutMap::list_members(CutCells& out) const {

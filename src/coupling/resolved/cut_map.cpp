@@ -38,6 +38,13 @@ void measure_row(int n, double band, const Position& position, const Measure& me
   }
 }
 
+/// Whether the distances of the corners (0,0), (1,0), (1,1), (0,1) of a face are far from those of a plane.
+bool sharp(const std::array<float, 4>& d) {
+  const float along =
+      std::max({std::abs(d[1] - d[0]), std::abs(d[2] - d[3]), std::abs(d[3] - d[0]), std::abs(d[2] - d[1])});
+  return std::abs(d[0] - d[1] - d[3] + d[2]) > kSharp * along;
+}
+
 /// Where a function that changes sign between 0 (value a) and 1 (value b) vanishes, by the Illinois rule.
 template <class F>
 double root(double a, double b, const F& f) {
@@ -188,19 +195,6 @@ void CutMap::cut_edges(const Region& r) {
   });
 }
 
-/// Whether the distances of the corners of a face along a and b, from node `at` on, are far from those of a
-/// plane.
-bool CutMap::sharp(const Region& r, std::size_t at, std::size_t a, std::size_t b) const {
-  const std::array<std::size_t, 3> step{1, static_cast<std::size_t>(r.n[0] + 1),
-                                        static_cast<std::size_t>((r.n[0] + 1) * (r.n[1] + 1))};
-  const auto d = [&](std::size_t up_a, std::size_t up_b) {
-    return r.node[at + up_a * step[a] + up_b * step[b]];
-  };
-  const float along = std::max({std::abs(d(1, 0) - d(0, 0)), std::abs(d(1, 1) - d(0, 1)),
-                                std::abs(d(0, 1) - d(0, 0)), std::abs(d(1, 1) - d(1, 0))});
-  return std::abs(d(0, 0) - d(1, 0) - d(0, 1) + d(1, 1)) > kSharp * along;
-}
-
 /// Where the tangents of the surface in the points 0 and 1 of a face (parts of its widths) meet: the edge of
 /// a body, which the line between both would cut off (Kobbelt et al. 2001). Into point 1; false where they
 /// are nearly parallel or meet outside.
@@ -242,11 +236,12 @@ void CutMap::close_faces(const Region& r) {
           const std::size_t a = (d + 1) % 3, b = (d + 2) % 3;
           if (index[a] + 1 >= extent[a] || index[b] + 1 >= extent[b]) continue;
           const std::size_t sa = static_cast<std::size_t>(step[a]), sb = static_cast<std::size_t>(step[b]);
-          const std::array<bool, 4> fluid{r.node[at] >= 0, r.node[at + sa] >= 0, r.node[at + sa + sb] >= 0,
-                                          r.node[at + sb] >= 0};
+          const std::array<float, 4> corner{r.node[at], r.node[at + sa], r.node[at + sa + sb],
+                                            r.node[at + sb]};
+          const std::array<bool, 4> fluid{corner[0] >= 0, corner[1] >= 0, corner[2] >= 0, corner[3] >= 0};
           const int corners = fluid[0] + fluid[1] + fluid[2] + fluid[3];
           const auto tip = [&](float x0, float y0, float& x1, float& y1) {
-            tip_[d][at] = !(corners == 2 && fluid[0] == fluid[2]) && sharp(r, at, a, b) &&
+            tip_[d][at] = !(corners == 2 && fluid[0] == fluid[2]) && sharp(corner) &&
                           find_tip(r, {i, j, k}, a, b, x0, y0, x1, y1);
             return tip_[d][at] != 0;
           };

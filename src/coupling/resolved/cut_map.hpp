@@ -51,7 +51,6 @@ class CutMap {
   void measure(Region& r);
   void cut_edges(const Region& r);
   void close_faces(const Region& r);
-  bool sharp(const Region& r, std::size_t at, std::size_t a, std::size_t b) const;
   bool find_tip(const Region& r, const std::array<int, 3>& node, std::size_t a, std::size_t b, float x0,
                 float y0, float& x1, float& y1) const;
   void record(const Region& r, int region);
@@ -64,6 +63,7 @@ class CutMap {
   void lock_in(CutCells& out) const;
   void choose_carriers(CutCells& out) const;
   int carrier_of(const CutCell& c, CutCells& out) const;
+  int add_plain(const int (&at)[3], CutCells& out) const;
   void close_dead_ends(CutCells& out) const;
   void list_members(CutCells& out) const;
   void find_donors(CutCells& out) const;

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "base/parallel.hpp"
+#include "flow/cut_geometry.hpp"
 #include "flow/piso/cut_flow.hpp"
 #include "flow/stencil.hpp"
 #include "grid/faces.hpp"
@@ -252,11 +253,9 @@ void Acoustic::measure_cells(const Block& middle, Real dt) {
 /// Small cells are one with their carrier in the equation: sums over cells are folded, and they share its
 /// change.
 void Acoustic::share(const CutCells& cut, FieldView f) const {
-  for (const CutCell& c : cut.cells) {
-    if (c.carrier < 0) continue;
-    const CutCell& carrier = cut.cells[static_cast<std::size_t>(c.carrier)];
+  for_each_small(cut, [f](const CutCell& c, const CutCell& carrier) {
     f(c.i, c.j, c.k) = f(carrier.i, carrier.j, carrier.k);
-  }
+  });
 }
 
 void Acoustic::conjugate_gradients(const Boundaries& boundaries, const CutCells& cut, double enough) {

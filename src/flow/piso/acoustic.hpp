@@ -23,8 +23,8 @@ class Acoustic {
 
   /// `middle`: primitive variables with ghosts. Conjugate gradients from the change of the step before. Of
   /// faces that solids close in part `velocity` is that of the gas through their open part, of closed ones
-  /// that of the solid. Small cells share the
-  /// change of their carrier. Allocates nothing once it has met as many faces.
+  /// that of the solid. Small cells share the change of their carrier. Allocates nothing once it has met as
+  /// many faces.
   void solve(const Boundaries& boundaries, const Block& middle, double dt, const CutCells& cut);
 
   /// Ghost pressures of the finished middle on transmissive faces, such that the mean with the cell inside is

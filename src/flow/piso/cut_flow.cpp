@@ -66,6 +66,7 @@ Vec3 CutFlow::begin(const CutCells& cut, const std::array<ConstFieldView, 3>& u)
   kept_.resize(cut.cells.size());
   sums_.resize(cut.cells.size());
   values_.resize(cut.ghosts.size());
+  list_closed_ends(cut);
   return sum;
 }
 
@@ -173,13 +174,14 @@ Vec3 CutFlow::predict(CutCells& cut, const MomentumTerms& t, const WallTurbulenc
   return total;
 }
 
-template <class Visit>
-void CutFlow::for_each_closed_end(const CutCells& cut, const Visit& visit) const {
+void CutFlow::list_closed_ends(const CutCells& cut) {
+  closed_ends_.clear();
   const GridMetrics metrics = metrics_of(grid_);
   const auto look = [&](int d, const Cell& face, Real closed) {
     const int along = face[static_cast<std::size_t>(d)];
     if (along == 0 || along == grid_.n(d))
-      visit(d, face, along == 0 ? 1.0 : -1.0, double(closed) * double(face_area_of(metrics, d, face)));
+      closed_ends_.push_back(
+          {d, face, along == 0 ? 1.0 : -1.0, double(closed) * double(face_area_of(metrics, d, face))});
   };
   for (const CutFace& f : cut.faces) look(f.d, {f.i, f.j, f.k}, f.closed);
   for (const CutCell& c : cut.cells) {
@@ -193,26 +195,27 @@ void CutFlow::for_each_closed_end(const CutCells& cut, const Visit& visit) const
   }
 }
 
-BoundaryFlow CutFlow::through_closed(const CutCells& cut, const MomentumTerms& t) const {
+BoundaryFlow CutFlow::through_closed(const MomentumTerms& t) const {
   BoundaryFlow sum;
-  for_each_closed_end(cut, [&](int d, const Cell& face, double sign, double area) {
-    const FaceMomentum at = momentum_at_face(grid_, t, d, face[0], face[1], face[2]);
-    const double q = double(t.face_velocity[static_cast<std::size_t>(d)](face[0], face[1], face[2]));
-    for (std::size_t e = 0; e < 3; ++e)
-      sum.momentum[int(e)] += sign * area * (q * double(at.carried[e]) - double(at.stress[e]));
-    sum.volume += sign * area * q;
-    sum.volume_in += std::max(sign * area * q, 0.0);
-  });
+  for (const ClosedEnd& e : closed_ends_) {
+    const auto [i, j, k] = e.face;
+    const FaceMomentum at = momentum_at_face(grid_, t, e.d, i, j, k);
+    const double q = double(t.face_velocity[static_cast<std::size_t>(e.d)](i, j, k));
+    for (std::size_t c = 0; c < 3; ++c)
+      sum.momentum[int(c)] += e.sign * e.area * (q * double(at.carried[c]) - double(at.stress[c]));
+    sum.volume += e.sign * e.area * q;
+    sum.volume_in += std::max(e.sign * e.area * q, 0.0);
+  }
   return sum;
 }
 
-Vec3 CutFlow::pressure_on_closed(const CutCells& cut, ConstFieldView p) const {
+Vec3 CutFlow::pressure_on_closed(ConstFieldView p) const {
   Vec3 sum{0, 0, 0};
-  for_each_closed_end(cut, [&](int d, const Cell& face, double sign, double area) {
-    const Real *here = &p(face[0], face[1], face[2]),
-               w = grid_.metrics(d).weight[face[static_cast<std::size_t>(d)]];
-    sum[d] += sign * area * double(w * here[-stride(p, d)] + (Real(1) - w) * here[0]);
-  });
+  for (const ClosedEnd& e : closed_ends_) {
+    const Real *here = &p(e.face[0], e.face[1], e.face[2]),
+               w = grid_.metrics(e.d).weight[e.face[static_cast<std::size_t>(e.d)]];
+    sum[e.d] += e.sign * e.area * double(w * here[-stride(p, e.d)] + (Real(1) - w) * here[0]);
+  }
   return sum;
 }
 
@@ -251,8 +254,8 @@ void CutFlow::extend_to_small(const CutCells& cut, FieldView p) const {
     return index == 0 || (index > 0 && cut.cells[static_cast<std::size_t>(index - 1)].carrier == index - 1);
   };
   for_each_index(static_cast<int>(cut.cells.size()), [&](int n) {
+    if (!cut.small(static_cast<std::size_t>(n))) return;
     const CutCell& c = cut.cells[static_cast<std::size_t>(n)];
-    if (c.carrier < 0 || c.carrier == n) return;
     const CutCell& carrier = cut.cells[static_cast<std::size_t>(c.carrier)];
     const Cell from{carrier.i, carrier.j, carrier.k}, to{c.i, c.j, c.k};
     const Real here = p(from[0], from[1], from[2]);
@@ -277,13 +280,10 @@ void CutFlow::extend_to_small(const CutCells& cut, FieldView p) const {
 }
 
 void CutFlow::fold(const CutCells& cut, FieldView f) {
-  for (std::size_t n = 0; n < cut.cells.size(); ++n) {
-    const CutCell& c = cut.cells[n];
-    if (c.carrier < 0 || c.carrier == static_cast<int>(n)) continue;
-    const CutCell& carrier = cut.cells[static_cast<std::size_t>(c.carrier)];
+  for_each_small(cut, [f](const CutCell& c, const CutCell& carrier) {
     f(carrier.i, carrier.j, carrier.k) += f(c.i, c.j, c.k);
     f(c.i, c.j, c.k) = 0;
-  }
+  });
 }
 
 void CutFlow::extend_to_solids(const CutCells& cut, FieldView p) {

@@ -42,8 +42,8 @@ class CutFlow {
   /// displaced fluid takes along, m4/s2.
   Vec3 predict(CutCells& cut, const MomentumTerms& terms, const WallTurbulence& turbulence, double weight);
   /// What sums over the whole faces of the box count through the parts of them that solids close.
-  BoundaryFlow through_closed(const CutCells& cut, const MomentumTerms& terms) const;
-  Vec3 pressure_on_closed(const CutCells& cut, ConstFieldView p) const;  ///< m4/s2 for p over density
+  BoundaryFlow through_closed(const MomentumTerms& terms) const;
+  Vec3 pressure_on_closed(ConstFieldView p) const;  ///< m4/s2 for p over density
   /// Ghosts take what the stencils should see.
   void extend(const CutCells& cut, const std::array<FieldView, 3>& u, const WallTurbulence& turbulence);
   /// Small cells have no pressure of their own: they take that of their carrier, extended by the gradient
@@ -72,16 +72,20 @@ class CutFlow {
   /// Of p in a carrier: the mean over its open faces, exact where p is linear. What volume times gradient
   /// asks of the walls beyond the pressure of their cell makes up for the rest of it: m4/s2 for p over
   /// density.
-  /// visit(d, face, sign, closed area, m2) for the faces of the box, closed as a whole where fluid is locked
-  /// in; sign: +1 where the box lies above.
-  template <class Visit>
-  void for_each_closed_end(const CutCells& cut, const Visit& visit) const;
   struct Gradient {
     std::array<Real, 3> value, beyond;
   };
   Gradient gradient(const CutCells& cut, const CutCell& carrier, ConstFieldView p) const;
 
  private:
+  /// A face of the box that solids close in part, or as a whole where fluid is locked in.
+  struct ClosedEnd {
+    int d;
+    std::array<int, 3> face;
+    double sign, area;  ///< +1 where the box lies above it; closed area, m2
+  };
+  void list_closed_ends(const CutCells& cut);
+
   const Grid& grid_;
   Real nu_;
   Field carried_;
@@ -90,8 +94,9 @@ class CutFlow {
   std::vector<std::array<Real, 3>> gradient_, kept_;  // of cut.cells
   std::vector<std::array<Real, 3>> values_;           // scratch of extend
   std::vector<Real> scalars_;                         // scratch of extend_to_solids
-  std::vector<Real> open_velocity_;                   // of cut.faces while they are closed
-  std::vector<Vec3> sums_;                            // scratch
+  std::vector<ClosedEnd> closed_ends_;
+  std::vector<Real> open_velocity_;  // of cut.faces while they are closed
+  std::vector<Vec3> sums_;           // scratch
 };
 
 }  // namespace ejecta

@@ -192,10 +192,7 @@ void CutGas::balance(CutCells& cut, const std::array<Block, 3>& flux, const Bloc
 
 void CutGas::settle(const CutCells& cut, const Field* eddy_viscosity, Block& u, Block& w) {
   extend(cut, w, eddy_viscosity);
-  for_each_index(static_cast<int>(cut.cells.size()), [&](int n) {
-    const CutCell& c = cut.cells[static_cast<std::size_t>(n)];
-    if (c.carrier == n || c.carrier < 0) return;
-    const CutCell& carrier = cut.cells[static_cast<std::size_t>(c.carrier)];
+  for_each_small(cut, [&w](const CutCell& c, const CutCell& carrier) {
     for (Field& f : w) f(c.i, c.j, c.k) = f(carrier.i, carrier.j, carrier.k);
   });
   extend_pressure(cut, w[kP]);

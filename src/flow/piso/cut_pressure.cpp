@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "flow/cut_geometry.hpp"
-
 namespace ejecta {
 namespace {
 
@@ -15,6 +13,7 @@ constexpr int kMostIterations = 60;
 CutPressure::CutPressure(const Grid& grid, FastDiagonalPoisson& whole,
                          const std::array<PoissonBoundary, 6>& boundary)
     : grid_(grid),
+      metrics_(metrics_of(grid)),
       whole_(whole),
       boundary_(boundary),
       work_(grid.make_field()),
@@ -31,7 +30,7 @@ void CutPressure::add_coupling(int d, std::array<int, 3> face, Real closed) {
   const int n = grid_.n(d);
   std::array<int, 3> low = face, high = face;
   --low[s];
-  Real strength = face_area_of(metrics_of(grid_), d, face) * grid_.metrics(d).inv_distance[face[s]];
+  Real strength = face_area_of(metrics_, d, face) * metrics_[s].inv_distance[face[s]];
   const bool first = face[s] == 0, last = face[s] == n;
   bool has_low = true, has_high = true;
   if (first || last) {
@@ -77,12 +76,9 @@ void CutPressure::begin(const CutCells& cut, const Boundaries& boundaries) {
   }
   const auto small = [&](const std::array<int, 3>& at) {
     const int index = cut.index(at[0], at[1], at[2]);
-    if (index <= 0) return false;
-    const int carrier = cut.cells[static_cast<std::size_t>(index - 1)].carrier;
-    return carrier >= 0 && carrier != index - 1;
+    return index > 0 && cut.small(static_cast<std::size_t>(index - 1));
   };
-  for (const CutCell& c : cut.cells) {
-    if (!small({c.i, c.j, c.k})) continue;
+  for_each_small(cut, [&](const CutCell& c, const CutCell&) {
     for (int side = 0; side < 6; ++side) {
       const std::size_t d = static_cast<std::size_t>(side / 2);
       const int n = grid_.n(side / 2);
@@ -99,9 +95,9 @@ void CutPressure::begin(const CutCells& cut, const Boundaries& boundaries) {
       if (boundaries.prescribed_on(side / 2, face)) continue;
       if (side % 2 == 0 || !inside || !small(beyond)) add_coupling(side / 2, face, Real(0));
     }
-  }
+  });
   boundaries.for_each_prescribed(
-      [&](int d, const std::array<int, 3>& face) { add_coupling(d, face, Real(1)); });
+      [&](int d, const std::array<int, 3>& face, const BoundaryState&) { add_coupling(d, face, Real(1)); });
   Range3 box{grid_.nx(), 0, grid_.ny(), 0, grid_.nz(), 0};
   for (const Entry& e : entries_) {
     box.i0 = std::min(box.i0, e.i), box.i1 = std::max(box.i1, e.i + 1);
@@ -115,17 +111,14 @@ void CutPressure::begin(const CutCells& cut, const Boundaries& boundaries) {
 
 void CutPressure::balance(const CutCells& cut, ConstFieldView phi, Real dt,
                           const std::array<FieldView, 3>& q) const {
-  for (std::size_t n = 0; n < cut.cells.size(); ++n) {
-    const CutCell& c = cut.cells[n];
-    if (c.carrier < 0 || c.carrier == static_cast<int>(n)) continue;
-    const CutCell& carrier = cut.cells[static_cast<std::size_t>(c.carrier)];
+  for_each_small(cut, [&](const CutCell& c, const CutCell& carrier) {
     const Real change = dt * (phi(c.i, c.j, c.k) - phi(carrier.i, carrier.j, carrier.k));
     for (int side = 0; side < 6; ++side) {
       const std::size_t d = static_cast<std::size_t>(side / 2);
       if (!grid_.active(side / 2)) continue;
       std::array<int, 3> face{c.i, c.j, c.k};
       face[d] += side % 2;
-      Real velocity = change * grid_.metrics(side / 2).inv_distance[face[d]];
+      Real velocity = change * metrics_[d].inv_distance[face[d]];
       if (side % 2) velocity = -velocity;
       const int last = grid_.n(side / 2);
       const bool of_box = face[d] == 0 || face[d] == last;
@@ -136,7 +129,7 @@ void CutPressure::balance(const CutCells& cut, ConstFieldView phi, Real dt,
       face[d] = last - face[d];
       q[d](face[0], face[1], face[2]) += velocity;
     }
-  }
+  });
 }
 
 void CutPressure::too_much(const std::vector<Real>& f, std::vector<Real>& out) {

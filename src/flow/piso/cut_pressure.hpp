@@ -4,6 +4,7 @@
 
 #include "flow/boundary.hpp"
 #include "flow/cut_cells.hpp"
+#include "flow/cut_geometry.hpp"
 #include "flow/poisson/fast_diagonal.hpp"
 #include "grid/grid.hpp"
 
@@ -56,6 +57,7 @@ class CutPressure {
   double product(const std::vector<Real>& a, const std::vector<Real>& b) const;
 
   const Grid& grid_;
+  GridMetrics metrics_;
   FastDiagonalPoisson& whole_;
   std::array<PoissonBoundary, 6> boundary_;
   std::vector<Entry> entries_;

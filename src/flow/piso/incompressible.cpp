@@ -18,7 +18,7 @@ namespace {
 /// What each of the two stages of Heun's method counts in a step.
 constexpr double kStageWeight = 0.5;
 /// What may pass closed faces after a correction, of what would without it. Pressure is incremental: what is
-/// left over is met again in the next correction. With 0.01 the force on a fixed cube is the same to 2e-5.
+/// left over is met again in the next correction.
 constexpr double kClosedTolerance = 0.01;
 /// Time of the pressure's filter (projection.hpp), parts of the step at Courant number 1: takes a quarter of
 /// what alternates in each correction and is the same for all Courant numbers from this one on.
@@ -143,7 +143,7 @@ BoundaryFlow Incompressible::predict(double a, double b, double time, Real dt, C
   t.dt = dt;
   t.increment_only = smoothing_;
   BoundaryFlow through = predict_momentum(grid_, t, boundary_sums_);
-  through -= cut_flow_.through_closed(cut, t);
+  through -= cut_flow_.through_closed(t);
   move_displaced(kStageWeight * double(dt) *
                  cut_flow_.predict(cut, t, wall_turbulence(), weight * setup_.density));
   for (int c = 0; smoothing_ && c < 3; ++c) smoother_.apply(u_star_[c].view(), {t.old[c], t.a, t.u[c], t.b});
@@ -151,7 +151,7 @@ BoundaryFlow Incompressible::predict(double a, double b, double time, Real dt, C
 }
 
 WallTurbulence Incompressible::wall_turbulence() const {
-  return turbulence_ ? WallTurbulence{turbulence_->k().view(), turbulence_->eddy_viscosity()}
+  return turbulence_ ? WallTurbulence{turbulence_->k().view(), turbulence_->eddy_viscosity(), {}}
                      : WallTurbulence{};
 }
 
@@ -197,21 +197,21 @@ void Incompressible::advance(double time, double dt, CutCells& cut) {
   smoothing_ = turbulence_ && dt > explicit_dt_;
   if (smoothing_) smoother_.prepare(0.5 * dt * largest_viscosity_, cut, cut_flow_.carried());
 
-  book_boundaries(predict(0.0, 1.0, time, h, cut, kStageWeight), cut, dt);
+  book_boundaries(predict(0.0, 1.0, time, h, cut, kStageWeight), dt);
   cut_flow_.extend(cut, views(u_star_), wall_turbulence());
   {
     ScopedTimer timer(times_.boundaries);
     boundaries_.update(time + dt);
   }
   correct(cut, h);
-  book_pressure(phi_.view(), cut, kStageWeight, dt);
+  book_pressure(phi_.view(), kStageWeight, dt);
   std::swap(u_old_, u_star_);  // correct() left the velocity of the step's beginning there
 
-  book_boundaries(predict(0.5, 0.5, time + dt, h, cut, 1.0), cut, dt);
+  book_boundaries(predict(0.5, 0.5, time + dt, h, cut, 1.0), dt);
   for (int n = 1; n < setup_.corrections; ++n) {
     cut_flow_.extend(cut, views(u_star_), wall_turbulence());
     correct(cut, h);
-    book_pressure(phi_.view(), cut, 1.0, dt);
+    book_pressure(phi_.view(), 1.0, dt);
     if (n + 1 < setup_.corrections) {
       std::swap(u_, u_star_);
       boundaries_.fill_pressure(p_.view(), views(q_), true);
@@ -232,19 +232,19 @@ void Incompressible::advance(double time, double dt, CutCells& cut) {
   }
 }
 
-void Incompressible::book_boundaries(const BoundaryFlow& through, const CutCells& cut, double dt) {
+void Incompressible::book_boundaries(const BoundaryFlow& through, double dt) {
   const double factor = kStageWeight * dt * setup_.density;
   ledger_.momentum_through_boundaries +=
       factor * (through.momentum + setup_.acceleration * (box_volume_ - cut_flow_.solid_volume()));
   ledger_.mass_through_boundaries += factor * through.volume;
   ledger_.mass_in += factor * through.volume_in;
-  book_pressure(p_.view(), cut, kStageWeight, dt);
+  book_pressure(p_.view(), kStageWeight, dt);
 }
 
-void Incompressible::book_pressure(ConstFieldView p, const CutCells& cut, double weight, double dt) {
+void Incompressible::book_pressure(ConstFieldView p, double weight, double dt) {
   ScopedTimer timer(times_.ledger);
   ledger_.momentum_through_boundaries +=
-      weight * dt * setup_.density * (boundary_pressure(grid_, p) - cut_flow_.pressure_on_closed(cut, p));
+      weight * dt * setup_.density * (boundary_pressure(grid_, p) - cut_flow_.pressure_on_closed(p));
 }
 
 std::vector<Field*> Incompressible::state() {

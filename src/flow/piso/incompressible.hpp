@@ -103,8 +103,8 @@ class Incompressible {
   void move_displaced(const Vec3& momentum) { ledger_.displaced += setup_.density * momentum; }
   WallTurbulence wall_turbulence() const;
   void correct(const CutCells& cut, Real dt);
-  void book_boundaries(const BoundaryFlow& through, const CutCells& cut, double dt);
-  void book_pressure(ConstFieldView p, const CutCells& cut, double weight, double dt);
+  void book_boundaries(const BoundaryFlow& through, double dt);
+  void book_pressure(ConstFieldView p, double weight, double dt);
   void evaluate_source(double time);
   std::array<FieldView, 3> views(std::array<Field, 3>& f);
   std::array<ConstFieldView, 3> views(const std::array<Field, 3>& f) const;
