@@ -15,6 +15,7 @@ namespace ejecta {
 struct CutCell {
   int i = 0, j = 0, k = 0;
   Real fluid = 1;                ///< fluid part of its own volume, 0..1
+  std::array<Real, 3> middle{};  ///< of its fluid, from that of the cell, m
   Real distance = 0;             ///< of its centre from the nearest surface, m; > 0 in the fluid
   std::array<Real, 3> normal{};  ///< of that surface, into the fluid
   bool locked = false;           ///< bodies lock its fluid in: it has neither momentum nor pressure

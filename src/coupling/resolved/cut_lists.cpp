@@ -19,6 +19,23 @@ constexpr double kDeep = 2.6;
 /// Closed or open up to round-off.
 constexpr float kWhole = 1.0f - 1e-5f, kNothing = 1e-5f;
 
+/// How far the wall behind a face is, widths of the cell: of the part of the face (open) through which one
+/// does not come to the one across (through).
+double room_behind(double fluid, double open, double through) {
+  return std::clamp((fluid - through) / (open - through), 0.0, 1.0);
+}
+
+/// Middle of a cell's fluid along an axis from that of the cell, widths: columns through both its faces, and
+/// columns from the more open one to a wall.
+Real middle_of(Real fluid, Real below, Real above) {
+  const double open = std::max(double(below), double(above)),
+               through = std::min(double(below), double(above));
+  if (open - through < double(kNothing)) return 0;
+  const double room = room_behind(double(fluid), open, through);
+  const double moved = (open - through) * room * 0.5 * (1.0 - room) / double(fluid);
+  return static_cast<Real>(above > below ? moved : -moved);
+}
+
 }  // namespace
 
 /// Faces that several bodies close are one face: closed by their sum, with their mean velocity.
@@ -98,12 +115,18 @@ void CutMap::add_cut_cell(std::span<const Record> records, CutCells& out) {
   for (int d = 0; d < 3; ++d) c.normal[static_cast<std::size_t>(d)] = static_cast<Real>(normal[d]);
   double solid = 0.0;
   for (const Record& r : records) solid += 1.0 - part_fluid(r);
-  double room = 1.0;
-  if (records.size() == 1 && nearest.edge)
-    for (std::size_t d = 0; d < 3; ++d)
-      room = std::min(room, 1.0 - 0.5 * double(nearest.closed[2 * d] + nearest.closed[2 * d + 1]));
-  room_.push_back(static_cast<Real>(room));
+  edge_of_.push_back(records.size() == 1 ? nearest.edge : 0.0f);
   c.fluid = static_cast<Real>(std::max(1.0 - solid, 1e-4));
+  for (std::size_t d = 0; d < 3; ++d) {
+    if (!grid_.active(int(d))) continue;
+    float closed[2] = {0, 0};
+    for (const Record& r : records)
+      for (std::size_t up = 0; up < 2; ++up) closed[up] += r.closed[2 * d + up];
+    c.middle[d] = middle_of(c.fluid, Real(1) - closed[0], Real(1) - closed[1]) *
+                  grid_.metrics(int(d)).width[d == 0   ? c.i
+                                              : d == 1 ? c.j
+                                                       : c.k];
+  }
   c.first_wall = static_cast<int>(out.walls.size());
   const Metrics m[3] = {grid_.metrics(0), grid_.metrics(1), grid_.metrics(2)};
   const double volume = grid_.volume(c.i, c.j, c.k);
@@ -307,29 +330,40 @@ int CutMap::carrier_of(const CutCell& c, CutCells& out) const {
   return added;
 }
 
-/// A small cell at an edge of a body: its faces may be open although a wall stands right behind them. What
-/// enters through a face that does not lead to its carrier has no more room than the cell: the rest of the
-/// face is closed, and is wall to the cell beyond. (An air stream turned round the edges of a box through
+/// A cell at an edge of a body: its faces may be open although a wall stands right behind them. The part of a
+/// face that has a wall behind it counts as open in the measure of the room between both; the rest is closed,
+/// and is wall to the cell beyond. Not so the face towards the carrier, or where there is none along the
+/// normal. (An air stream turned round the edges of a box through
 /// such faces: its drag fell by half as its faces went from a face of the grid to just behind it.)
 void CutMap::close_dead_ends(CutCells& out) const {
   struct Change {
     CutFace face;
-    int cell;  // the small one
+    int cell;  // at the edge
     int beyond[3];
     Real sign;  // +1: the face is its upper one
   };
   std::vector<Change> changes;
-  for (std::size_t n = 0; n < room_.size(); ++n) {
+  for (std::size_t n = 0; n < edge_of_.size(); ++n) {
     const CutCell& c = out.cells[n];
-    if (room_[n] >= Real(1) || !out.small(n)) continue;
+    if (!(edge_of_[n] > 0) || c.locked) continue;
     for_each_neighbour(c, out, [&](int index, int side, const int* cell, double open) {
-      if (index < 0 || open <= double(room_[n])) return;
+      if (index < 0 || open < kPassage) return;
       if (index > 0 && out.cells[static_cast<std::size_t>(index - 1)].carrier == c.carrier) return;
+      int across[3] = {c.i, c.j, c.k};
+      across[side / 2] += 1 - side % 2;
+      const double through =
+          1.0 - double(out.closed[static_cast<std::size_t>(side / 2)](across[0], across[1], across[2]));
+      const double ends = open - through;  // this part has a wall behind it
+      if (ends < double(kNothing)) return;
+      const double room = room_behind(double(c.fluid), open, through);
+      const double along = double(c.normal[static_cast<std::size_t>(side / 2)]);
+      const double straight = along * along * std::clamp(4.0 * double(c.fluid) - 1.0, 0.0, 1.0);
+      const double share = double(edge_of_[n]) * (1.0 - straight);
       CutFace f;
       f.d = side / 2;
       f.i = c.i, f.j = c.j, f.k = c.k;
       (f.d == 0 ? f.i : f.d == 1 ? f.j : f.k) += side % 2;
-      f.closed = Real(1) - room_[n];
+      f.closed = static_cast<Real>(1.0 - open + share * ends * (1.0 - room));
       f.velocity = out.walls[static_cast<std::size_t>(c.first_wall)].velocity[static_cast<std::size_t>(f.d)];
       changes.push_back({f, static_cast<int>(n), {cell[0], cell[1], cell[2]}, side % 2 ? Real(1) : Real(-1)});
     });

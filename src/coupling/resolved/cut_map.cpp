@@ -13,9 +13,11 @@ constexpr int kMargin = 3;
 /// Widths of a cell within which distances are measured.
 constexpr double kBand = 2.8;
 /// How far the distances of a face's corners may be from those of a plane before an edge of the body is
-/// sought in it, and how nearly parallel (sine) its sides may be.
-constexpr float kSharp = 0.25f;
-constexpr double kParallel = 0.3;
+/// sought in it, and between which turns of the surface (sine) it passes from smooth to sharp.
+constexpr float kSharp = 0.01f;
+constexpr double kSmoothTurn = 0.3, kSharpTurn = 0.6;
+/// To what part of a cell points of the surface are known.
+constexpr double kExact = 1e-3;
 /// Open up to round-off.
 constexpr float kNothing = 1e-5f;
 
@@ -196,10 +198,10 @@ void CutMap::cut_edges(const Region& r) {
 }
 
 /// Where the tangents of the surface in the points 0 and 1 of a face (parts of its widths) meet: the edge of
-/// a body, which the line between both would cut off (Kobbelt et al. 2001). Into point 1; false where they
-/// are nearly parallel or meet outside.
-bool CutMap::find_tip(const Region& r, const std::array<int, 3>& node, std::size_t a, std::size_t b, float x0,
-                      float y0, float& x1, float& y1) const {
+/// a body, which the line between both would cut off (Kobbelt et al. 2001). Not where they meet outside;
+/// where the surface hardly turns, between that point and the line.
+CutMap::Tip CutMap::find_tip(const Region& r, const std::array<int, 3>& node, std::size_t a, std::size_t b,
+                             float x0, float y0, float x1, float y1) const {
   Vec3 low, size{0, 0, 0};
   for (std::size_t d = 0; d < 3; ++d) low[int(d)] = coordinate(int(d), r.low[d] + node[d]);
   for (const std::size_t d : {a, b}) size[int(d)] = coordinate(int(d), r.low[d] + node[d] + 1) - low[int(d)];
@@ -207,18 +209,24 @@ bool CutMap::find_tip(const Region& r, const std::array<int, 3>& node, std::size
     Vec3 point = low - r.shift;
     point[int(a)] += double(x) * size[int(a)];
     point[int(b)] += double(y) * size[int(b)];
-    const Vec3 n = r.body->orientation * r.body->shape.gradient(r.body->to_body(point));
+    return Vec3(r.body->orientation * r.body->shape.gradient(r.body->to_body(point)));
+  };
+  const Vec3 normal0 = normal(x0, y0), normal1 = normal(x1, y1);
+  const double sharp =
+      std::clamp((normal0.cross(normal1).norm() - kSmoothTurn) / (kSharpTurn - kSmoothTurn), 0.0, 1.0);
+  if (!(sharp > 0.0)) return {};
+  const auto in_face = [&](const Vec3& n) {
     return Eigen::Vector2d(n[int(a)] * size[int(a)], n[int(b)] * size[int(b)]).normalized();
   };
-  const Eigen::Vector2d n0 = normal(x0, y0), n1 = normal(x1, y1);
+  const Eigen::Vector2d n0 = in_face(normal0), n1 = in_face(normal1);
   const double turn = n0.x() * n1.y() - n0.y() * n1.x();
-  if (!(std::abs(turn) > kParallel)) return false;
+  if (!(std::abs(turn) > kExact)) return {};
   const double c0 = n0.x() * double(x0) + n0.y() * double(y0), c1 = n1.x() * double(x1) + n1.y() * double(y1);
   const double x = (c0 * n1.y() - c1 * n0.y()) / turn, y = (n0.x() * c1 - n1.x() * c0) / turn;
-  if (!(x >= 0.0 && x <= 1.0 && y >= 0.0 && y <= 1.0)) return false;
-  x1 = static_cast<float>(x);
-  y1 = static_cast<float>(y);
-  return true;
+  if (!(std::abs(x - 0.5) <= 0.5 + kExact && std::abs(y - 0.5) <= 0.5 + kExact)) return {};
+  const double mx = 0.5 * double(x0 + x1), my = 0.5 * double(y0 + y1);
+  return {static_cast<float>(sharp), static_cast<float>(mx + sharp * (std::clamp(x, 0.0, 1.0) - mx)),
+          static_cast<float>(my + sharp * (std::clamp(y, 0.0, 1.0) - my))};
 }
 
 /// Entry (i, j, k) of face_[d] is the lower d-face of cell (i, j, k), with the extent of the nodes.
@@ -226,7 +234,7 @@ void CutMap::close_faces(const Region& r) {
   const int nx = r.n[0] + 1, ny = r.n[1] + 1, nz = r.n[2] + 1;
   const std::array<int, 3> extent{nx, ny, nz}, step{1, nx, nx * ny};
   for (auto& f : face_) f.resize(r.node.size());
-  for (auto& t : tip_) t.assign(r.node.size(), 0);
+  for (auto& t : tip_) t.assign(r.node.size(), {});
   for_each_index(nz, [&](int k) {
     for (int j = 0; j < ny; ++j)
       for (int i = 0; i < nx; ++i) {
@@ -241,9 +249,13 @@ void CutMap::close_faces(const Region& r) {
           const std::array<bool, 4> fluid{corner[0] >= 0, corner[1] >= 0, corner[2] >= 0, corner[3] >= 0};
           const int corners = fluid[0] + fluid[1] + fluid[2] + fluid[3];
           const auto tip = [&](float x0, float y0, float& x1, float& y1) {
-            tip_[d][at] = !(corners == 2 && fluid[0] == fluid[2]) && sharp(corner) &&
-                          find_tip(r, {i, j, k}, a, b, x0, y0, x1, y1);
-            return tip_[d][at] != 0;
+            if ((corners == 2 && fluid[0] == fluid[2]) || !sharp(corner)) return false;
+            const Tip found = find_tip(r, {i, j, k}, a, b, x0, y0, x1, y1);
+            if (!(found.sharp > 0)) return false;
+            tip_[d][at] = found;
+            x1 = found.x;
+            y1 = found.y;
+            return true;
           };
           face_[d][at] =
               corners == 4 ? 0.0f
@@ -267,15 +279,23 @@ void CutMap::record(const Region& r, int region) {
     for (int j = 0; j < r.n[1]; ++j)
       for (int i = 0; i < r.n[0]; ++i) {
         const std::size_t at = static_cast<std::size_t>((k * ny + j) * nx + i);
-        Record c{r.low[0] + i, r.low[1] + j, r.low[2] + k, region, {}, 0, false};
-        float most = 0;
+        Record c{r.low[0] + i, r.low[1] + j, r.low[2] + k, region, {}, 0, 0, {}};
+        float most = 0, tips = 0;
         for (std::size_t d = 0; d < 3; ++d) {
           c.closed[2 * d] = face_[d][at];
           c.closed[2 * d + 1] = face_[d][at + step[d]];
           most = std::max({most, c.closed[2 * d], c.closed[2 * d + 1]});
-          c.edge = c.edge || tip_[d][at] || tip_[d][at + step[d]];
+          for (std::size_t up = 0; up < 2; ++up) {
+            const Tip& tip = tip_[d][at + up * step[d]];
+            tips += tip.sharp;
+            c.edge = std::max(c.edge, tip.sharp);
+            c.tip[d] += tip.sharp * static_cast<float>(up);
+            c.tip[(d + 1) % 3] += tip.sharp * tip.x;
+            c.tip[(d + 2) % 3] += tip.sharp * tip.y;
+          }
         }
         if (most < kNothing) continue;
+        for (float& x : c.tip) x = tips > 0 ? x / tips : 0.5f;
         c.distance = r.distance[r.at(c.i, c.j, c.k)];
         list.push_back(c);
       }
@@ -312,10 +332,11 @@ double CutMap::width_along(const Vec3& normal, int i, int j, int k) const {
   return width;
 }
 
-/// Fluid part of a cell by the divergence theorem: the integral of x . n over its open faces and its wall,
-/// from its centre, is its volume times the number of directions.
+/// Fluid part of a cell by the divergence theorem: the integral of x . n over its open faces and its wall is
+/// its volume times the number of directions; x from its centre, or from a point on the body's edge, which
+/// both walls there pass through.
 double CutMap::part_fluid(const Record& r) const {
-  double faces = 0.0, wall2 = 0.0;
+  double from_centre = 0.0, from_tip = 0.0, wall2 = 0.0;
   int directions = 0;
   const int at[3] = {r.i, r.j, r.k};
   double volume = 1.0;
@@ -323,12 +344,14 @@ double CutMap::part_fluid(const Record& r) const {
   for (std::size_t d = 0; d < 3; ++d) {
     if (!grid_.active(int(d))) continue;
     ++directions;
-    faces += 1.0 - 0.5 * double(r.closed[2 * d] + r.closed[2 * d + 1]);
-    const double area = volume / grid_.axis(int(d)).width[static_cast<std::size_t>(at[d])] *
-                        double(r.closed[2 * d + 1] - r.closed[2 * d]);
+    const double low = 1.0 - double(r.closed[2 * d]), high = 1.0 - double(r.closed[2 * d + 1]);
+    from_centre += 0.5 * (low + high);
+    from_tip += double(r.tip[d]) * low + (1.0 - double(r.tip[d])) * high;
+    const double area = volume / grid_.axis(int(d)).width[static_cast<std::size_t>(at[d])] * (low - high);
     wall2 += area * area;
   }
-  return std::clamp((faces + std::sqrt(wall2) * double(r.distance) / volume) / directions, 0.0, 1.0);
+  from_centre += std::sqrt(wall2) * double(r.distance) / volume;
+  return std::clamp((from_centre + double(r.edge) * (from_tip - from_centre)) / directions, 0.0, 1.0);
 }
 
 void CutMap::clear(CutCells& out) const {
@@ -351,7 +374,7 @@ void CutMap::map(std::span<const Body> bodies, std::span<const double> roughness
   clear(out);
   records_.clear();
   ghost_region_.clear();
-  room_.clear();
+  edge_of_.clear();
   used_ = 0;
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     std::array<int, 3> images{};

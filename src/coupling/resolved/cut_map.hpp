@@ -44,15 +44,21 @@ class CutMap {
     int i, j, k, region;
     std::array<float, 6> closed;
     float distance;
-    bool edge;  ///< whether an edge of the body runs through it
+    float edge;  ///< how much of an edge of the body runs through it: 0 a smooth surface, 1 sharp
+    std::array<float, 3> tip;  ///< a point on that edge, parts of the cell's widths
+  };
+  /// Where an edge of the body meets a face, parts of its widths.
+  struct Tip {
+    float sharp = 0;  ///< 0: no edge
+    float x = 0, y = 0;
   };
 
   bool find_region(const Body& body, const Vec3& shift, Region& r) const;
   void measure(Region& r);
   void cut_edges(const Region& r);
   void close_faces(const Region& r);
-  bool find_tip(const Region& r, const std::array<int, 3>& node, std::size_t a, std::size_t b, float x0,
-                float y0, float& x1, float& y1) const;
+  Tip find_tip(const Region& r, const std::array<int, 3>& node, std::size_t a, std::size_t b, float x0,
+               float y0, float x1, float y1) const;
   void record(const Region& r, int region);
   void collect_faces(CutCells& out) const;
   void collect_cells(CutCells& out);
@@ -82,14 +88,14 @@ class CutMap {
   const Grid& grid_;
   std::array<bool, 3> periodic_;
   std::vector<Region> regions_;
-  int used_ = 0;                             // regions in use
-  std::array<std::vector<float>, 3> edge_;   // fluid part of its edges
-  std::array<std::vector<float>, 3> face_;   // closed part of its faces
-  std::array<std::vector<char>, 3> tip_;     // whether an edge of the body runs through them
+  int used_ = 0;                            // regions in use
+  std::array<std::vector<float>, 3> edge_;  // fluid part of its edges
+  std::array<std::vector<float>, 3> face_;  // closed part of its faces
+  std::array<std::vector<Tip>, 3> tip_;
   std::vector<std::vector<Record>> planes_;  // scratch, one list a plane
   std::vector<Record> records_;
   std::vector<int> ghost_region_;  // of every ghost of the map
-  std::vector<Real> room_;         // of the cells at an edge of a body: part open from side to side; others 1
+  std::vector<float> edge_of_;     // of cells, as in Record
   struct FacePart {
     std::int64_t key;
     CutFace face;

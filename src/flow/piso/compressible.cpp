@@ -223,7 +223,7 @@ void Compressible::advance(double dt, CutCells& cut) {
   const bool solids_are_booked = options_.keep_ledger && (!cut.empty() || had_solids_);
   had_solids_ = !cut.empty();
   const Contents before = solids_are_booked ? contents() : Contents{};
-  cut_gas_.begin(cut, u_, w_);
+  cut_gas_.begin(cut, u_, w_, dt);
   if (solids_are_booked) ledger().displaced += contents() - before;
   cut_gas_.extend(cut, w_, eddies());
   cut_gas_.extend_pressure(cut, w_[kP]);

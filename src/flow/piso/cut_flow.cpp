@@ -16,6 +16,8 @@ using Triple = std::array<Real, 3>;
 
 /// Nearest a centre counts to its wall, parts of a cell: friction there is implicit anyway.
 constexpr Real kNearest = Real(0.05);
+/// Open part of the face to its carrier below which continuity says little of a small cell.
+constexpr Real kLeast = Real(0.25);
 
 /// Closed faces move with their solid.
 void hold_closed(const CutCells& cut, const std::array<FieldView, 3>& q) {
@@ -32,7 +34,7 @@ CutFlow::CutFlow(const Grid& grid, double viscosity)
   carried_.fill(Real(1));
 }
 
-Vec3 CutFlow::begin(const CutCells& cut, const std::array<ConstFieldView, 3>& u) {
+Vec3 CutFlow::begin(const CutCells& cut, const std::array<ConstFieldView, 3>& u, double dt) {
   Vec3 sum{0, 0, 0};
   const auto add = [&](int i, int j, int k, double sign) {
     const double part = sign * double(carried_(i, j, k)) * grid_.volume(i, j, k);
@@ -66,6 +68,10 @@ Vec3 CutFlow::begin(const CutCells& cut, const std::array<ConstFieldView, 3>& u)
   kept_.resize(cut.cells.size());
   sums_.resize(cut.cells.size());
   values_.resize(cut.ghosts.size());
+  step_ = static_cast<Real>(dt);
+  held_.resize(cut.ghosts.size());
+  for (std::size_t n = 0; n < cut.ghosts.size(); ++n)
+    for (std::size_t e = 0; e < 3; ++e) held_[n][e] = u[e](cut.ghosts[n].i, cut.ghosts[n].j, cut.ghosts[n].k);
   list_closed_ends(cut);
   return sum;
 }
@@ -115,7 +121,7 @@ void CutFlow::rub(CutCells& cut, const CutCell& c, const WallTurbulence& turbule
     if (area <= Real(0)) return;
     const Triple solid = full_stress ? carried_on(wall, y) : wall.velocity;
     Triple moved{v[0] - solid[0], v[1] - solid[1], v[2] - solid[2]};
-    if (turbulent) moved = along_wall(moved, wall.area);
+    moved = along_wall(moved, wall.area);  // there is no viscous stress along the normal of a wall
     const Real conductance =
         turbulent ? wall_law::conductance(norm(moved), y, nu, std::max(turbulence.k(c.i, c.j, c.k), Real(0)),
                                           wall.roughness)
@@ -127,6 +133,35 @@ void CutFlow::rub(CutCells& cut, const CutCell& c, const WallTurbulence& turbule
       cut.friction_impulse[static_cast<std::size_t>(w)][int(e)] += weight * double(volume) * double(change);
     }
   });
+}
+
+/// d/dt of the mean of x over fluid that walls sweep (Reynolds): sum of their flow times what x has there
+/// beyond that mean, over the volume.
+std::array<Real, 3> CutFlow::middle_moves(const CutCells& cut, const CutCell& carrier) const {
+  const GridMetrics m = metrics_of(grid_);
+  const Real volume = carrier.carried * static_cast<Real>(grid_.volume(carrier.i, carrier.j, carrier.k));
+  const auto from_carrier = [&](const CutCell& c) {
+    return Triple{m[0].centre[c.i] - m[0].centre[carrier.i], m[1].centre[c.j] - m[1].centre[carrier.j],
+                  m[2].centre[c.k] - m[2].centre[carrier.k]};
+  };
+  Triple sum{0, 0, 0};
+  Real swept = 0;
+  for_each_wall(cut, carrier, [&](const CutWall& w, int) {
+    const CutCell& c = cut.cells[static_cast<std::size_t>(w.cell)];
+    const Triple centre = from_carrier(c);
+    const Real through = dot(w.area, w.velocity);
+    swept += through;
+    for (std::size_t d = 0; d < 3; ++d) sum[d] += through * (centre[d] - c.distance * c.normal[d]);
+  });
+  if (swept == Real(0)) return {};
+  for (int n = carrier.first_member; n < carrier.first_member + carrier.members; ++n) {
+    const CutCell& c = cut.cells[static_cast<std::size_t>(cut.members[static_cast<std::size_t>(n)])];
+    const Real share = c.fluid * static_cast<Real>(grid_.volume(c.i, c.j, c.k)) / volume;
+    const Triple centre = from_carrier(c);
+    for (std::size_t d = 0; d < 3; ++d) sum[d] -= swept * share * (centre[d] + c.middle[d]);
+  }
+  for (std::size_t d = 0; d < 3; ++d) sum[d] = grid_.active(int(d)) ? sum[d] / volume : Real(0);
+  return sum;
 }
 
 Vec3 CutFlow::predict(CutCells& cut, const MomentumTerms& t, const WallTurbulence& turbulence,
@@ -152,14 +187,18 @@ Vec3 CutFlow::predict(CutCells& cut, const MomentumTerms& t, const WallTurbulenc
     const Triple g = gradient(cut, c, t.pressure).value;
     gradient_[static_cast<std::size_t>(n)] = g;
     const Real volume = c.carried * static_cast<Real>(grid_.volume(c.i, c.j, c.k)), step = t.b * t.dt;
+    // What is balanced is the mean of the fluid; what is kept, the velocity at the centre of the cell.
+    const Triple moves = middle_moves(cut, c);
     Triple base, v;
     for (std::size_t e = 0; e < 3; ++e) {
       Real rate = t.acceleration[e] - balance[e] / volume - g[e];
+      const Real shifted = moves == Triple{} ? Real(0) : dot(moves, gradient(cut, c, t.u[e]).value);
+      rate -= shifted;
       if (t.source[e].origin) rate += t.source[e](c.i, c.j, c.k);
       base[e] = t.b * here[e];
       if (t.a != Real(0)) base[e] += t.a * t.old[e](c.i, c.j, c.k);
       v[e] = base[e] + step * rate;
-      displaced[int(e)] = outflow * double(here[e]);
+      displaced[int(e)] = outflow * double(here[e]) - double(volume) * double(shifted);
     }
     rub(cut, c, turbulence, step, weight, v);
     for (std::size_t e = 0; e < 3; ++e) t.out[e](c.i, c.j, c.k) = t.increment_only ? v[e] - base[e] : v[e];
@@ -241,10 +280,55 @@ void CutFlow::extend(const CutCells& cut, const std::array<FieldView, 3>& u,
     }
     const Real tangential = Real(1) - linear * (Real(1) - g.ratio);
     for (std::size_t e = 0; e < 3; ++e) value[e] += g.ratio * through * g.normal[e] + tangential * along[e];
+    // A small cell comes to this in the time that the stream takes to pass its fluid: one that has just
+    // become small would shake the pressure otherwise.
+    const int index = cut.index(g.i, g.j, g.k);
+    if (index <= 0 || !cut.small(static_cast<std::size_t>(index - 1))) return;
+    const CutCell& c = cut.cells[static_cast<std::size_t>(index - 1)];
+    const Real width = width_along_normal(grid_, c);
+    const Real rate = step_ * (norm(w) + nu / width) / (width * std::max(c.fluid, kNearest));
+    const Triple& held = held_[static_cast<std::size_t>(n)];
+    for (std::size_t e = 0; e < 3; ++e) value[e] = (held[e] + rate * value[e]) / (Real(1) + rate);
   });
   for_each_index(static_cast<int>(cut.ghosts.size()), [&](int n) {
     const GhostCell& g = cut.ghosts[static_cast<std::size_t>(n)];
     for (std::size_t e = 0; e < 3; ++e) u[e](g.i, g.j, g.k) = values_[static_cast<std::size_t>(n)][e];
+  });
+}
+
+void CutFlow::move_small(const CutCells& cut, const std::array<ConstFieldView, 3>& q,
+                         const std::array<FieldView, 3>& u) const {
+  const GridMetrics metrics = metrics_of(grid_);
+  for_each_small(cut, [&](const CutCell& c, const CutCell& carrier) {
+    const Cell at{c.i, c.j, c.k}, to{carrier.i, carrier.j, carrier.k};
+    const int apart = std::abs(to[0] - at[0]) + std::abs(to[1] - at[1]) + std::abs(to[2] - at[2]);
+    const Real near = std::min(Real(4) * c.fluid - Real(1), Real(1));  // to a cell of its own
+    if (apart != 1 || near <= Real(0)) return;
+    Real out = 0, across = 0;
+    std::size_t along = 0;
+    Cell between{};
+    for (int side = 0; side < 6; ++side) {
+      const std::size_t d = static_cast<std::size_t>(side / 2);
+      if (!grid_.active(side / 2)) continue;
+      Cell face = at;
+      face[d] += side % 2;
+      const Real open = Real(1) - cut.closed[d](face[0], face[1], face[2]);
+      const Real area = (side % 2 ? open : -open) * face_area_of(metrics, side / 2, face);
+      if (to[d] - at[d] == (side % 2 ? 1 : -1)) {
+        across = area;
+        along = d;
+        between = face;
+        if (open < kLeast) return;
+      } else {
+        out += area * q[d](face[0], face[1], face[2]);
+      }
+    }
+    for (int w = c.first_wall; w < c.first_wall + c.walls; ++w)
+      out +=
+          dot(cut.walls[static_cast<std::size_t>(w)].area, cut.walls[static_cast<std::size_t>(w)].velocity);
+    const Real velocity = -out / across, lower = metrics[along].weight[between[along]];
+    const Real own = to[along] > at[along] ? lower : Real(1) - lower;
+    u[along](c.i, c.j, c.k) = (velocity - (Real(1) - own) * u[along](carrier.i, carrier.j, carrier.k)) / own;
   });
 }
 
@@ -293,6 +377,41 @@ void CutFlow::extend_to_solids(const CutCells& cut, FieldView p) {
   });
 }
 
+Real CutFlow::through_open(const CutCells& cut, int d, const Cell& face, ConstFieldView u) const {
+  const std::size_t s = static_cast<std::size_t>(d);
+  const Real w = grid_.metrics(d).weight[face[s]], closed = cut.closed[s](face[0], face[1], face[2]);
+  const auto below = [s](Cell at) {
+    --at[s];
+    return at;
+  };
+  const auto between = [&](const Cell& at) {
+    const Cell low = below(at);
+    return w * u(low[0], low[1], low[2]) + (Real(1) - w) * u(at[0], at[1], at[2]);
+  };
+  const Real middle = between(face);
+  if (closed <= Real(0) || closed >= Real(1)) return middle;
+  Triple normal{0, 0, 0};
+  for (const Cell& side : {below(face), face}) {
+    const int index = cut.index(side[0], side[1], side[2]);
+    for (std::size_t e = 0; index > 0 && e < 3; ++e)
+      if (e != s && grid_.active(int(e)))
+        normal[e] += cut.cells[static_cast<std::size_t>(index - 1)].normal[e];
+  }
+  const Real length = std::abs(normal[0]) + std::abs(normal[1]) + std::abs(normal[2]);
+  Real velocity = middle;
+  for (std::size_t e = 0; e < 3; ++e) {
+    if (normal[e] == Real(0)) continue;
+    Cell next = face;
+    next[e] += normal[e] > 0 ? 1 : -1;
+    const Cell low = below(next);
+    if (next[e] < 0 || next[e] >= grid_.n(int(e)) || cut.index(next[0], next[1], next[2]) < 0 ||
+        cut.index(low[0], low[1], low[2]) < 0 || cut.closed[s](next[0], next[1], next[2]) >= Real(1))
+      continue;
+    velocity += Real(0.5) * closed * std::abs(normal[e]) / length * (between(next) - middle);
+  }
+  return velocity;
+}
+
 void CutFlow::face_velocities(const CutCells& cut, const std::array<ConstFieldView, 3>& u, ConstFieldView p,
                               Real filter_time, const std::array<FieldView, 3>& q) {
   for_each_index(static_cast<int>(cut.cells.size()), [&](int n) {
@@ -329,11 +448,7 @@ void CutFlow::face_velocities(const CutCells& cut, const std::array<ConstFieldVi
   const auto set = [&](int d, const Cell& face) {
     const std::size_t s = static_cast<std::size_t>(d);
     if (face[s] <= 0 || face[s] >= grid_.n(d)) return;  // of the box
-    Cell low = face;
-    --low[s];
-    const Metrics m = grid_.metrics(d);
-    const Real w = m.weight[face[s]];
-    const Real velocity = w * u[s](low[0], low[1], low[2]) + (Real(1) - w) * u[s](face[0], face[1], face[2]);
+    const Real velocity = through_open(cut, d, face, u[s]);
     // As in face_velocities() of the whole grid; not on the last face before a wall, where the gradient of
     // the cell is one-sided and its roughness is not that of p.
     Cell below = face, above = face;

@@ -28,8 +28,9 @@ class CutFlow {
   /// viscosity: m2/s, of a gas Pa s.
   CutFlow(const Grid& grid, double viscosity);
 
-  /// New cells: volumes of fluid, and the momentum over density (m4/s) that their change puts into the sums.
-  Vec3 begin(const CutCells& cut, const std::array<ConstFieldView, 3>& u);
+  /// New cells, for a step of dt s: volumes of fluid, and the momentum over density (m4/s) that their change
+  /// puts into the sums.
+  Vec3 begin(const CutCells& cut, const std::array<ConstFieldView, 3>& u, double dt);
   /// Part of a cell's volume whose momentum it carries: 1 in plain fluid, 0 in solids.
   ConstFieldView carried() const { return carried_.view(); }
   Field& carried_field() { return carried_; }
@@ -46,6 +47,9 @@ class CutFlow {
   Vec3 pressure_on_closed(ConstFieldView p) const;  ///< m4/s2 for p over density
   /// Ghosts take what the stencils should see.
   void extend(const CutCells& cut, const std::array<FieldView, 3>& u, const WallTurbulence& turbulence);
+  /// Small cells move towards their carrier as continuity has it.
+  void move_small(const CutCells& cut, const std::array<ConstFieldView, 3>& q,
+                  const std::array<FieldView, 3>& u) const;
   /// Small cells have no pressure of their own: they take that of their carrier, extended by the gradient
   /// beyond it.
   void extend_to_small(const CutCells& cut, FieldView p) const;
@@ -85,13 +89,19 @@ class CutFlow {
     double sign, area;  ///< +1 where the box lies above it; closed area, m2
   };
   void list_closed_ends(const CutCells& cut);
+  /// Velocity of the middle of the fluid that a carrier is balanced over, as walls sweep it, m/s.
+  std::array<Real, 3> middle_moves(const CutCells& cut, const CutCell& carrier) const;
+  /// Velocity along d in the middle of the open part of a face.
+  Real through_open(const CutCells& cut, int d, const std::array<int, 3>& face, ConstFieldView u) const;
 
   const Grid& grid_;
   Real nu_;
+  Real step_ = 0;  // s
   Field carried_;
   double solid_volume_ = 0;
   std::vector<std::array<int, 3>> touched_;           // cells whose carried_ is not 1, rows in turn
   std::vector<std::array<Real, 3>> gradient_, kept_;  // of cut.cells
+  std::vector<std::array<Real, 3>> held_;             // velocity of ghosts at the beginning of the step
   std::vector<std::array<Real, 3>> values_;           // scratch of extend
   std::vector<Real> scalars_;                         // scratch of extend_to_solids
   std::vector<ClosedEnd> closed_ends_;

@@ -22,7 +22,7 @@ class CutGas {
   CutGas(const Grid& grid, const godunov::GasConstants& gas, double viscosity);
 
   /// New cells. One that lost its gas to a carrier brings it along.
-  void begin(const CutCells& cut, godunov::Block& u, godunov::Block& w);
+  void begin(const CutCells& cut, godunov::Block& u, godunov::Block& w, double dt);
   /// Part of a cell's volume whose gas it keeps: 1 in plain fluid, 0 in solids.
   Field& carried() { return flow_.carried_field(); }
   /// To be called after the carried field has been filled from elsewhere.

@@ -184,6 +184,7 @@ void Incompressible::correct(const CutCells& cut, Real dt) {
   cut_flow_.correct(cut, phi_.view(), dt, views(q_), views(u_star_));
   boundaries_.prescribe_face_velocity(views(q_));
   cut_flow_.extend(cut, views(u_star_), wall_turbulence());
+  cut_flow_.move_small(cut, std::as_const(*this).views(q_), views(u_star_));
   std::swap(u_, u_star_);
 }
 
@@ -191,7 +192,7 @@ void Incompressible::advance(double time, double dt, CutCells& cut) {
   const Real h = static_cast<Real>(dt);
   filter_time_ = static_cast<Real>(kFilter / std::max(courant(1.0), 1e-30));
   convection_ = -1.0;
-  move_displaced(cut_flow_.begin(cut, std::as_const(*this).views(u_)));
+  move_displaced(cut_flow_.begin(cut, std::as_const(*this).views(u_), dt));
   cut_flow_.extend_to_small(cut, p_.view());
   cut_pressure_.begin(cut, boundaries_);
   smoothing_ = turbulence_ && dt > explicit_dt_;
