@@ -188,13 +188,16 @@ void CutPressure::invert(const std::vector<Real>& r, std::vector<Real>& out) {
 /// With L the operator of the whole grid and A that of the open parts of faces, P^T A P phi = P^T rhs. All
 /// vectors of the iteration are L^-1 of sources on the entries, since L is inverted exactly; sources are
 /// folded, none stands on a cell that is one with another.
-void CutPressure::solve(const CutCells& cut, FieldView phi, double tolerance) {
+bool CutPressure::solve(const CutCells& cut, FieldView phi, double tolerance) {
   for (const GhostCell& g : cut.ghosts)
     if (cut.index(g.i, g.j, g.k) < 0) phi(g.i, g.j, g.k) = 0;  // but for round-off it is
   for (const CutCell& c : cut.cells)
     if (c.locked) phi(c.i, c.j, c.k) = 0;
   iterations_ = 0;
-  if (couplings_.empty()) return whole_.solve(phi, phi);
+  if (couplings_.empty()) {
+    whole_.solve(phi, phi);
+    return true;
+  }
   const bool windows = whole_.has_windows();
   if (windows) {
     whole_.begin(phi);
@@ -208,13 +211,15 @@ void CutPressure::solve(const CutCells& cut, FieldView phi, double tolerance) {
   std::fill(source_.begin(), source_.end(), Real(0));
   // r = P^T (rhs - A P phi), z = L^-1 r; steps along z, on which P^T A P is negative definite
   double before = 0.0, first = 0.0, least = 0.0;
+  bool is_met = false;
   for (int n = 0; n < kMostIterations; ++n) {
     invert(residual_, z_);
     const double now = -product(residual_, z_);
     if (n == 0) first = now;
     least = n == 0 ? now : std::min(least, now);
+    is_met = !(now > tolerance * tolerance * first) || !(now > 0.0);
     // Where nothing but round-off is left the residual grows again.
-    if (!(now > tolerance * tolerance * first) || !(now > 0.0) || now > 4.0 * least) break;
+    if (is_met || now > 4.0 * least) break;
     ++iterations_;
     const Real beta = n == 0 ? Real(0) : static_cast<Real>(now / before);
     for (std::size_t e = 0; e < z_.size(); ++e) {
@@ -247,6 +252,7 @@ void CutPressure::solve(const CutCells& cut, FieldView phi, double tolerance) {
     const Entry& other = entries_[static_cast<std::size_t>(e.one_with)];
     phi(e.i, e.j, e.k) = phi(other.i, other.j, other.k);
   }
+  return is_met;
 }
 
 }  // namespace ejecta

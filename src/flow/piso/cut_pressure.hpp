@@ -26,8 +26,8 @@ class CutPressure {
   /// The faces of this step: what bodies close, and where an open boundary prescribes the velocity.
   void begin(const CutCells& cut, const Boundaries& boundaries);
   /// phi, given as the right-hand side (volume flow over dt, m3/s2), becomes the solution; stops when what
-  /// still passes closed faces is `tolerance` of what would without them.
-  void solve(const CutCells& cut, FieldView phi, double tolerance);
+  /// still passes closed faces is `tolerance` of what would without them; false where that is not reached.
+  bool solve(const CutCells& cut, FieldView phi, double tolerance);
   /// On the faces of small cells, from q -= dt grad phi with a phi that has been extended to them to what the
   /// solution balances, which shares that of their carrier.
   void balance(const CutCells& cut, ConstFieldView phi, Real dt, const std::array<FieldView, 3>& q) const;

@@ -10,6 +10,7 @@
 #include "base/stopwatch.hpp"
 #include "flow/piso/momentum.hpp"
 #include "flow/piso/projection.hpp"
+#include "flow/piso/sealed.hpp"
 #include "flow/stencil.hpp"
 
 namespace ejecta {
@@ -173,7 +174,7 @@ void Incompressible::correct(const CutCells& cut, Real dt) {
   }
   {
     ScopedTimer timer(times_.pressure);
-    cut_pressure_.solve(cut, phi_.view(), kClosedTolerance);
+    if (!cut_pressure_.solve(cut, phi_.view(), kClosedTolerance)) refuse_sealed(cut);
   }
   ScopedTimer timer(times_.correction);
   cut_flow_.extend_to_small(cut, phi_.view());
@@ -186,6 +187,17 @@ void Incompressible::correct(const CutCells& cut, Real dt) {
   cut_flow_.extend(cut, views(u_star_), wall_turbulence());
   cut_flow_.move_small(cut, std::as_const(*this).views(q_), views(u_star_));
   std::swap(u_, u_star_);
+}
+
+void Incompressible::refuse_sealed(const CutCells& cut) const {
+  const auto sealed = find_sealed(grid_, cut, boundaries_, views(q_));
+  if (!sealed) return;
+  throw DivergedError(fmt::format(
+      "bodies close off a part of the box: {:.3g} m3/s of fluid {} near x, y, z = {:.4g}, {:.4g}, {:.4g} mm, "
+      "and "
+      "no open face of the box leads {} there; leave a gap around the body, or open a face",
+      std::abs(sealed->flow), sealed->flow > 0.0 ? "enters it" : "leaves it", 1e3 * sealed->at.x(),
+      1e3 * sealed->at.y(), 1e3 * sealed->at.z(), sealed->flow > 0.0 ? "out of" : "into"));
 }
 
 void Incompressible::advance(double time, double dt, CutCells& cut) {

@@ -103,6 +103,8 @@ class Incompressible {
   void move_displaced(const Vec3& momentum) { ledger_.displaced += setup_.density * momentum; }
   WallTurbulence wall_turbulence() const;
   void correct(const CutCells& cut, Real dt);
+  /// Throws where boundaries push fluid into a part of the box that has no open face.
+  void refuse_sealed(const CutCells& cut) const;
   void book_boundaries(const BoundaryFlow& through, double dt);
   void book_pressure(ConstFieldView p, double weight, double dt);
   void evaluate_source(double time);
