@@ -6,6 +6,7 @@
 #include <memory>
 #include <random>
 
+#include "base/error.hpp"
 #include "base/parallel.hpp"
 #include "coupling/resolved/resolved.hpp"
 
@@ -162,6 +163,48 @@ TEST(BodiesInLiquid, ABodyThatCrossesCellsIsPushedEvenly) {
       EXPECT_LT(most, 1.6 * sum / steps) << angle << " " << dt;
       EXPECT_GT(least, 0.5 * sum / steps) << angle << " " << dt;
     }
+}
+
+std::array<Boundary, 6> channel(double u) {
+  std::array<Boundary, 6> faces = all(BoundaryKind::mirror);
+  faces[0].kind = BoundaryKind::inflow;
+  faces[0].state = [u](const Vec3&, double) {
+    BoundaryState s;
+    s.velocity[0] = static_cast<Real>(u);
+    return s;
+  };
+  faces[1].kind = BoundaryKind::open;
+  return faces;
+}
+
+/// Two blocks that leave a gap of a tenth of a cell, through which everything must go. What that takes is of
+/// the size of a plane gap's pressure, 12 nu u length / gap^2 (Poiseuille): the gap has the pressures of its
+/// two ends, so more is not to be had; but it must not grow from step to step.
+TEST(BodiesInLiquid, AGapThinnerThanACellResistsAsAGapDoes) {
+  const double gap = 0.01, length = 0.5, inflow = 0.1, nu = 0.05;
+  IncompressibleSetup setup;
+  setup.viscosity = nu;
+  const auto block = [&](double side) {
+    return body_of(make_box({length, 4, 1}), {0, 0, side * 0.5 * (1.0 + gap)});
+  };
+  Bodies b(Grid(even(-1, 1, 20), even(-0.5, 0.5, 1), even(-1, 1, 20)), channel(inflow), setup,
+           {block(1), block(-1)}, {inflow, 0, 0});
+  const auto run_to = [&b](double time) {
+    while (b.time < time) b.step(1e-3);
+    return b.loads[0].force.x();
+  };
+  const double early = run_to(0.1), late = run_to(0.2);
+  EXPECT_NEAR(late, early, 0.02 * early);
+  const double through = 2.0 * inflow / gap;
+  const double push = kDensity * 12.0 * nu * through * length / (gap * gap) * (1.0 - 0.5 * gap);
+  EXPECT_GT(late, push / 3);
+  EXPECT_LT(late, push * 3);
+}
+
+TEST(BodiesInLiquid, APlugInAChannelIsRefused) {
+  Bodies b(Grid(even(-1, 1, 20), even(-1, 1, 8), even(-1, 1, 8)), channel(1.0), {},
+           {body_of(make_box({0.5, 2, 2}), Vec3::Zero())}, {1, 0, 0});
+  EXPECT_THROW(b.step(1e-2), DivergedError);
 }
 
 TEST(BodiesInLiquid, MomentumOfAPeriodicBoxAndItsBodiesIsKept) {

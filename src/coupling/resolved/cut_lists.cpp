@@ -216,9 +216,11 @@ void CutMap::choose_carriers(CutCells& out) const {
   for (std::size_t n = 0; n < cut; ++n)
     if (out.cells[n].carrier < 0 && !out.cells[n].locked)
       out.cells[n].carrier = carrier_of(CutCell(out.cells[n]), out);
-  // Small cells that have none beside them are carried by what carries a neighbour.
-  for (bool more = true; more;) {
-    more = false;
+  // Small cells that have none beside them are carried by what carries a neighbour: from all ends at once, so
+  // that a gap thinner than a cell belongs to both sides that it joins.
+  std::vector<std::pair<std::size_t, int>> found;
+  do {
+    found.clear();
     for (std::size_t n = 0; n < cut; ++n) {
       if (out.cells[n].carrier >= 0 || out.cells[n].locked) continue;
       double widest = 0.0;
@@ -231,11 +233,10 @@ void CutMap::choose_carriers(CutCells& out) const {
         widest = open;
         carrier = out.cells[static_cast<std::size_t>(index - 1)].carrier;
       });
-      if (carrier < 0) continue;
-      out.cells[n].carrier = carrier;
-      more = true;
+      if (carrier >= 0) found.push_back({n, carrier});
     }
-  }
+    for (const auto& [n, carrier] : found) out.cells[n].carrier = carrier;
+  } while (!found.empty());
 }
 
 /// Fluid that bodies lock in between them moves with them and has no pressure: its cells are told apart, and

@@ -34,7 +34,8 @@ CutFlow::CutFlow(const Grid& grid, double viscosity)
   carried_.fill(Real(1));
 }
 
-Vec3 CutFlow::begin(const CutCells& cut, const std::array<ConstFieldView, 3>& u, double dt) {
+Vec3 CutFlow::begin(const CutCells& cut, const std::array<ConstFieldView, 3>& u, ConstFieldView p,
+                    double dt) {
   Vec3 sum{0, 0, 0};
   const auto add = [&](int i, int j, int k, double sign) {
     const double part = sign * double(carried_(i, j, k)) * grid_.volume(i, j, k);
@@ -72,6 +73,7 @@ Vec3 CutFlow::begin(const CutCells& cut, const std::array<ConstFieldView, 3>& u,
   held_.resize(cut.ghosts.size());
   for (std::size_t n = 0; n < cut.ghosts.size(); ++n)
     for (std::size_t e = 0; e < 3; ++e) held_[n][e] = u[e](cut.ghosts[n].i, cut.ghosts[n].j, cut.ghosts[n].k);
+  if (p.origin) push_thin(cut, p, step_);
   list_closed_ends(cut);
   return sum;
 }
@@ -83,6 +85,34 @@ void CutFlow::resume() {
     for (int j = 0; j < grid_.ny(); ++j)
       for (int i = 0; i < grid_.nx(); ++i)
         if (part(i, j, k) != Real(1)) touched_.push_back({i, j, k});
+}
+
+bool CutFlow::thin(const CutCells& cut, const GhostCell& g) const {
+  const int index = cut.index(g.i, g.j, g.k);
+  return g.donors == 0 && index > 0 && cut.small(static_cast<std::size_t>(index - 1));
+}
+
+void CutFlow::push_thin(const CutCells& cut, ConstFieldView p, Real dt) {
+  for_each_index(static_cast<int>(cut.ghosts.size()), [&](int n) {
+    const GhostCell& g = cut.ghosts[static_cast<std::size_t>(n)];
+    if (!thin(cut, g)) return;
+    const Cell at{g.i, g.j, g.k};
+    for (std::size_t d = 0; d < 3; ++d) {
+      if (!grid_.active(static_cast<int>(d))) continue;
+      const Metrics m = grid_.metrics(static_cast<int>(d));
+      Real sum = 0, total = 0;
+      for (int up = 0; up < 2; ++up) {
+        Cell face = at, beyond = at;
+        face[d] += up;
+        beyond[d] += up ? 1 : -1;
+        const Real open = Real(1) - cut.closed[d](face[0], face[1], face[2]);
+        const Real change = p(beyond[0], beyond[1], beyond[2]) - p(at[0], at[1], at[2]);
+        sum += open * (up ? change : -change) * m.inv_distance[face[d]];
+        total += open;
+      }
+      if (total > Real(0)) held_[static_cast<std::size_t>(n)][d] -= dt * sum / total;
+    }
+  });
 }
 
 CutFlow::Gradient CutFlow::gradient(const CutCells& cut, const CutCell& carrier, ConstFieldView p) const {
@@ -264,6 +294,24 @@ void CutFlow::extend(const CutCells& cut, const std::array<FieldView, 3>& u,
     const GhostCell& g = cut.ghosts[static_cast<std::size_t>(n)];
     Triple& value = values_[static_cast<std::size_t>(n)];
     value = g.solid;
+    if (thin(cut, g)) {
+      // Between walls closer than a cell: what the carrier's fluid mixes in over the time that it passes a
+      // cell, and the friction of a plane gap.
+      const CutCell& c = cut.cells[static_cast<std::size_t>(cut.index(g.i, g.j, g.k) - 1)];
+      const CutCell& carrier = cut.cells[static_cast<std::size_t>(c.carrier)];
+      const Triple& held = held_[static_cast<std::size_t>(n)];
+      Real wetted = 0;
+      for (int at = c.first_wall; at < c.first_wall + c.walls; ++at)
+        wetted += norm(cut.walls[static_cast<std::size_t>(at)].area);
+      const Real width = width_along_normal(grid_, c),
+                 volume = static_cast<Real>(grid_.volume(c.i, c.j, c.k));
+      const Real gap = Real(2) * c.fluid * volume / std::max(wetted, kNearest * volume / width);
+      const Real mixes = step_ * norm(held) / width, rubs = Real(12) * step_ * nu_ / (gap * gap);
+      for (std::size_t e = 0; e < 3; ++e)
+        value[e] = (held[e] + mixes * u[e](carrier.i, carrier.j, carrier.k) + rubs * g.solid[e]) /
+                   (Real(1) + mixes + rubs);
+      return;
+    }
     if (g.donors == 0) return;
     const auto from = [&](ConstFieldView f) { return from_donors(g, f); };
     Triple w{from(u[0]) - g.solid[0], from(u[1]) - g.solid[1], from(u[2]) - g.solid[2]};
@@ -501,6 +549,7 @@ void CutFlow::keep(const CutCells& cut, const std::array<ConstFieldView, 3>& u) 
 void CutFlow::correct(const CutCells& cut, ConstFieldView phi, Real dt, const std::array<FieldView, 3>& q,
                       const std::array<FieldView, 3>& u) {
   hold_closed(cut, q);
+  push_thin(cut, phi, dt);
   for_each_index(static_cast<int>(cut.cells.size()), [&](int n) {
     const CutCell& c = cut.cells[static_cast<std::size_t>(n)];
     if (c.carrier != n) return;

@@ -28,9 +28,10 @@ class CutFlow {
   /// viscosity: m2/s, of a gas Pa s.
   CutFlow(const Grid& grid, double viscosity);
 
-  /// New cells, for a step of dt s: volumes of fluid, and the momentum over density (m4/s) that their change
+  /// New cells, for a step of dt s; p over density moves what gaps thinner than a cell hold (null: nothing
+  /// does): volumes of fluid, and the momentum over density (m4/s) that their change
   /// puts into the sums.
-  Vec3 begin(const CutCells& cut, const std::array<ConstFieldView, 3>& u, double dt);
+  Vec3 begin(const CutCells& cut, const std::array<ConstFieldView, 3>& u, ConstFieldView p, double dt);
   /// Part of a cell's volume whose momentum it carries: 1 in plain fluid, 0 in solids.
   ConstFieldView carried() const { return carried_.view(); }
   Field& carried_field() { return carried_; }
@@ -89,6 +90,10 @@ class CutFlow {
     double sign, area;  ///< +1 where the box lies above it; closed area, m2
   };
   void list_closed_ends(const CutCells& cut);
+  /// Whether a small cell lies between walls so close that no cell of the fluid tells what moves in it.
+  bool thin(const CutCells& cut, const GhostCell& g) const;
+  /// There only the pressure moves the fluid.
+  void push_thin(const CutCells& cut, ConstFieldView p, Real dt);
   /// Velocity of the middle of the fluid that a carrier is balanced over, as walls sweep it, m/s.
   std::array<Real, 3> middle_moves(const CutCells& cut, const CutCell& carrier) const;
   /// Velocity along d in the middle of the open part of a face.

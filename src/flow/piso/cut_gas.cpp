@@ -63,7 +63,7 @@ void CutGas::merge(const CutCells& cut, Block& u, Block& w) {
 
 void CutGas::begin(const CutCells& cut, Block& u, Block& w, double dt) {
   merge(cut, u, w);
-  flow_.begin(cut, {w[kU].view(), w[kV].view(), w[kW].view()}, dt);
+  flow_.begin(cut, {w[kU].view(), w[kV].view(), w[kW].view()}, {}, dt);
   kept_.resize(cut.cells.size());
   swept_.assign(cut.cells.size(), 0.0);
   const auto add = [&](int i, int j, int k, double flow) {
