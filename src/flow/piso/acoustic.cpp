@@ -120,6 +120,17 @@ void Acoustic::measure_faces(const Block& middle, Real dt) {
   sweep(std::integral_constant<int, 2>{});
 }
 
+/// Faces half closed are passed in the middle of their open part.
+void Acoustic::move_to_open(const CutCells& cut, const Block& middle) {
+  for_each_index(static_cast<int>(cut.faces.size()), [&](int n) {
+    const CutFace& f = cut.faces[static_cast<std::size_t>(n)];
+    const std::array<int, 3> face{f.i, f.j, f.k};
+    const std::size_t d = static_cast<std::size_t>(f.d);
+    if (face[d] > 0 && face[d] < grid_.n(f.d))
+      velocity_[d](f.i, f.j, f.k) += CutFlow::to_middle_of_open(grid_, cut, f.d, face, middle[kU + d].view());
+  });
+}
+
 /// velocity_ becomes the volume flow over the whole area of a face, the solid's through the closed part, and
 /// conductance_ that of the open part.
 void Acoustic::close_faces(const CutCells& cut) {
@@ -329,6 +340,7 @@ void Acoustic::correct_faces() {
 
 void Acoustic::solve(const Boundaries& boundaries, const Block& middle, double dt, const CutCells& cut) {
   measure_faces(middle, Real(dt));
+  move_to_open(cut, middle);
   open_boundaries(boundaries, middle, Real(last_dt_ > 0.0 ? dt / last_dt_ : 0.0));
   last_dt_ = dt;
   close_faces(cut);

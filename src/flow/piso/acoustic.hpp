@@ -50,6 +50,7 @@ class Acoustic {
   };
   static Real leaving(const BlockView<const Real>& w, const BoundaryCell& b, Real impedance);
   void measure_faces(const Block& middle, Real dt);
+  void move_to_open(const CutCells& cut, const godunov::Block& middle);
   void close_faces(const CutCells& cut);
   void leave_to_fluid(const CutCells& cut, const Block& middle, Real dt);
   void reopen_faces(const CutCells& cut);

@@ -425,9 +425,11 @@ void CutFlow::extend_to_solids(const CutCells& cut, FieldView p) {
   });
 }
 
-Real CutFlow::through_open(const CutCells& cut, int d, const Cell& face, ConstFieldView u) const {
+Real CutFlow::to_middle_of_open(const Grid& grid, const CutCells& cut, int d, const Cell& face,
+                                ConstFieldView u) {
   const std::size_t s = static_cast<std::size_t>(d);
-  const Real w = grid_.metrics(d).weight[face[s]], closed = cut.closed[s](face[0], face[1], face[2]);
+  const Real w = grid.metrics(d).weight[face[s]], closed = cut.closed[s](face[0], face[1], face[2]);
+  if (closed <= Real(0) || closed >= Real(1)) return 0;
   const auto below = [s](Cell at) {
     --at[s];
     return at;
@@ -436,28 +438,26 @@ Real CutFlow::through_open(const CutCells& cut, int d, const Cell& face, ConstFi
     const Cell low = below(at);
     return w * u(low[0], low[1], low[2]) + (Real(1) - w) * u(at[0], at[1], at[2]);
   };
-  const Real middle = between(face);
-  if (closed <= Real(0) || closed >= Real(1)) return middle;
   Triple normal{0, 0, 0};
   for (const Cell& side : {below(face), face}) {
     const int index = cut.index(side[0], side[1], side[2]);
     for (std::size_t e = 0; index > 0 && e < 3; ++e)
-      if (e != s && grid_.active(int(e)))
+      if (e != s && grid.active(int(e)))
         normal[e] += cut.cells[static_cast<std::size_t>(index - 1)].normal[e];
   }
   const Real length = std::abs(normal[0]) + std::abs(normal[1]) + std::abs(normal[2]);
-  Real velocity = middle;
+  Real change = 0;
   for (std::size_t e = 0; e < 3; ++e) {
     if (normal[e] == Real(0)) continue;
     Cell next = face;
     next[e] += normal[e] > 0 ? 1 : -1;
     const Cell low = below(next);
-    if (next[e] < 0 || next[e] >= grid_.n(int(e)) || cut.index(next[0], next[1], next[2]) < 0 ||
+    if (next[e] < 0 || next[e] >= grid.n(int(e)) || cut.index(next[0], next[1], next[2]) < 0 ||
         cut.index(low[0], low[1], low[2]) < 0 || cut.closed[s](next[0], next[1], next[2]) >= Real(1))
       continue;
-    velocity += Real(0.5) * closed * std::abs(normal[e]) / length * (between(next) - middle);
+    change += Real(0.5) * closed * std::abs(normal[e]) / length * (between(next) - between(face));
   }
-  return velocity;
+  return change;
 }
 
 void CutFlow::face_velocities(const CutCells& cut, const std::array<ConstFieldView, 3>& u, ConstFieldView p,
@@ -496,7 +496,11 @@ void CutFlow::face_velocities(const CutCells& cut, const std::array<ConstFieldVi
   const auto set = [&](int d, const Cell& face) {
     const std::size_t s = static_cast<std::size_t>(d);
     if (face[s] <= 0 || face[s] >= grid_.n(d)) return;  // of the box
-    const Real velocity = through_open(cut, d, face, u[s]);
+    Cell low = face;
+    --low[s];
+    const Real w = grid_.metrics(d).weight[face[s]];
+    const Real velocity = w * u[s](low[0], low[1], low[2]) + (Real(1) - w) * u[s](face[0], face[1], face[2]) +
+                          to_middle_of_open(grid_, cut, d, face, u[s]);
     // As in face_velocities() of the whole grid; not on the last face before a wall, where the gradient of
     // the cell is one-sided and its roughness is not that of p.
     Cell below = face, above = face;

@@ -81,6 +81,12 @@ class CutFlow {
     std::array<Real, 3> value, beyond;
   };
   Gradient gradient(const CutCells& cut, const CutCell& carrier, ConstFieldView p) const;
+  /// Velocity of the middle of the fluid that a carrier is balanced over, as walls sweep it, m/s.
+  std::array<Real, 3> middle_moves(const CutCells& cut, const CutCell& carrier) const;
+  /// What the velocity along d in the middle of the open part of an inner face has beyond that in the middle
+  /// of the face.
+  static Real to_middle_of_open(const Grid& grid, const CutCells& cut, int d, const std::array<int, 3>& face,
+                                ConstFieldView u);
 
  private:
   /// A face of the box that solids close in part, or as a whole where fluid is locked in.
@@ -94,11 +100,6 @@ class CutFlow {
   bool thin(const CutCells& cut, const GhostCell& g) const;
   /// There only the pressure moves the fluid.
   void push_thin(const CutCells& cut, ConstFieldView p, Real dt);
-  /// Velocity of the middle of the fluid that a carrier is balanced over, as walls sweep it, m/s.
-  std::array<Real, 3> middle_moves(const CutCells& cut, const CutCell& carrier) const;
-  /// Velocity along d in the middle of the open part of a face.
-  Real through_open(const CutCells& cut, int d, const std::array<int, 3>& face, ConstFieldView u) const;
-
   const Grid& grid_;
   Real nu_;
   Real step_ = 0;  // s

@@ -53,8 +53,10 @@ void CutGas::merge(const CutCells& cut, Block& u, Block& w) {
         sum[e] += part * double(u[e](member.i, member.j, member.k));
     }
     if (parts < 2) return;
+    // Velocities stand at the centres of cells: that of the carrier stays.
     for (std::size_t e = 0; e < kComponents; ++e) u[e](c.i, c.j, c.k) = static_cast<Real>(sum[e] / volume);
     const Real rho = u[kRho](c.i, c.j, c.k);
+    for (const std::size_t e : {kU, kV, kW}) u[e](c.i, c.j, c.k) = rho * w[e](c.i, c.j, c.k);
     for (std::size_t e = 0; e < kComponents; ++e)
       w[e](c.i, c.j, c.k) = e == kRho ? rho : u[e](c.i, c.j, c.k) / rho;
     w[kP](c.i, c.j, c.k) = (gas_.gamma - 1) * (u[kP](c.i, c.j, c.k) - kinetic(w, c.i, c.j, c.k));
@@ -65,6 +67,7 @@ void CutGas::begin(const CutCells& cut, Block& u, Block& w, double dt) {
   merge(cut, u, w);
   flow_.begin(cut, {w[kU].view(), w[kV].view(), w[kW].view()}, {}, dt);
   kept_.resize(cut.cells.size());
+  shifted_.assign(cut.cells.size(), {});
   swept_.assign(cut.cells.size(), 0.0);
   const auto add = [&](int i, int j, int k, double flow) {
     if (i < 0 || j < 0 || k < 0 || i >= grid_.nx() || j >= grid_.ny() || k >= grid_.nz()) return;
@@ -177,6 +180,19 @@ void CutGas::balance(CutCells& cut, const std::array<Block, 3>& flux, const Bloc
     w[kK](c.i, c.j, c.k) = now[kK] / rho;
     std::array<Real, 3> v{now[kU] / rho, now[kV] / rho, now[kW] / rho};
     flow_.rub(cut, c, turbulence, dt, double(rho), v);
+    const std::array<Real, 3> moves = flow_.middle_moves(cut, c);
+    shifted_[n] = {};
+    if (moves != std::array<Real, 3>{}) {
+      const Real before = dot(v, v);
+      for (std::size_t d = 0; d < 3; ++d) {
+        const Real change = -dt * dot(moves, flow_.gradient(cut, c, middle[kU + d].view()).value);
+        v[d] += change;
+        shifted_[n].momentum[int(d)] = double(rho) * volume * double(change);
+      }
+      const Real change = Real(0.5) * rho * (dot(v, v) - before);
+      now[kP] += change;
+      shifted_[n].energy = volume * double(change);
+    }
     for (std::size_t d = 0; d < 3; ++d) now[kU + d] = rho * v[d];
     for_each_wall(cut, c, [&](const CutWall& wall, int at) {
       now[kP] -= static_cast<Real>(cut.friction_impulse[static_cast<std::size_t>(at)].dot(velocity_of(wall)) /
@@ -220,6 +236,8 @@ CutGas::Given CutGas::given(const CutCells& cut, const Block& start, double dt) 
     sum.displaced.mass -= at(kRho);
     sum.displaced.momentum -= Vec3(at(kU), at(kV), at(kW));
     sum.displaced.energy -= at(kP);
+    sum.displaced.momentum += shifted_[n].momentum;
+    sum.displaced.energy += shifted_[n].energy;
   }
   return sum;
 }

@@ -73,6 +73,8 @@ class CutGas {
   };
   std::vector<Kept> kept_;     // of cut.cells
   std::vector<double> swept_;  // of cut.cells: volume that moving solids clear in a carrier, m3/s
+  std::vector<godunov::Contents>
+      shifted_;  // of cut.cells: what the movement of their middles gave in the last step
   std::vector<Real> scratch_;
 };
 
