@@ -358,8 +358,7 @@ void CutMap::close_dead_ends(CutCells& out) const {
       if (ends < double(kNothing)) return;
       const double room = room_behind(double(c.fluid), open, through);
       const double along = double(c.normal[static_cast<std::size_t>(side / 2)]);
-      const double straight = along * along * std::clamp(4.0 * double(c.fluid) - 1.0, 0.0, 1.0);
-      const double share = double(edge_of_[n]) * (1.0 - straight);
+      const double share = double(edge_of_[n]) * (out.small(n) ? 1.0 : 1.0 - along * along);
       CutFace f;
       f.d = side / 2;
       f.i = c.i, f.j = c.j, f.k = c.k;
