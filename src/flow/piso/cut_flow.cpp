@@ -351,7 +351,9 @@ void CutFlow::move_small(const CutCells& cut, const std::array<ConstFieldView, 3
     const Cell at{c.i, c.j, c.k}, to{carrier.i, carrier.j, carrier.k};
     const int apart = std::abs(to[0] - at[0]) + std::abs(to[1] - at[1]) + std::abs(to[2] - at[2]);
     const Real near = std::min(Real(4) * c.fluid - Real(1), Real(1));  // to a cell of its own
-    if (apart != 1 || near <= Real(0)) return;
+    if (apart != 1 || near <= Real(0) || c.walls == 0) return;
+    // Relative to the solid, so that round-off of the geometry does not count where all moves with it.
+    const Triple solid = cut.walls[static_cast<std::size_t>(c.first_wall)].velocity;
     Real out = 0, across = 0;
     std::size_t along = 0;
     Cell between{};
@@ -368,15 +370,17 @@ void CutFlow::move_small(const CutCells& cut, const std::array<ConstFieldView, 3
         between = face;
         if (open < kLeast) return;
       } else {
-        out += area * q[d](face[0], face[1], face[2]);
+        out += area * (q[d](face[0], face[1], face[2]) - solid[d]);
       }
     }
-    for (int w = c.first_wall; w < c.first_wall + c.walls; ++w)
-      out +=
-          dot(cut.walls[static_cast<std::size_t>(w)].area, cut.walls[static_cast<std::size_t>(w)].velocity);
-    const Real velocity = -out / across, lower = metrics[along].weight[between[along]];
+    for (int w = c.first_wall; w < c.first_wall + c.walls; ++w) {
+      const CutWall& wall = cut.walls[static_cast<std::size_t>(w)];
+      for (std::size_t d = 0; d < 3; ++d) out += wall.area[d] * (wall.velocity[d] - solid[d]);
+    }
+    const Real velocity = solid[along] - out / across, lower = metrics[along].weight[between[along]];
     const Real own = to[along] > at[along] ? lower : Real(1) - lower;
-    u[along](c.i, c.j, c.k) = (velocity - (Real(1) - own) * u[along](carrier.i, carrier.j, carrier.k)) / own;
+    const Real asked = (velocity - (Real(1) - own) * u[along](carrier.i, carrier.j, carrier.k)) / own;
+    u[along](c.i, c.j, c.k) += near * (asked - u[along](c.i, c.j, c.k));
   });
 }
 
