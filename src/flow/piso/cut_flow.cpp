@@ -150,8 +150,8 @@ void CutFlow::rub(CutCells& cut, const CutCell& c, const WallTurbulence& turbule
     const Real area = norm(wall.area);
     if (area <= Real(0)) return;
     const Triple solid = full_stress ? carried_on(wall, y) : wall.velocity;
-    Triple moved{v[0] - solid[0], v[1] - solid[1], v[2] - solid[2]};
-    moved = along_wall(moved, wall.area);  // there is no viscous stress along the normal of a wall
+    // There is no viscous stress along the normal of a wall.
+    const Triple moved = along_wall({v[0] - solid[0], v[1] - solid[1], v[2] - solid[2]}, wall.area);
     const Real conductance =
         turbulent ? wall_law::conductance(norm(moved), y, nu, std::max(turbulence.k(c.i, c.j, c.k), Real(0)),
                                           wall.roughness)
@@ -288,30 +288,34 @@ Vec3 CutFlow::pressure_on_closed(ConstFieldView p) const {
   return sum;
 }
 
+/// What the carrier's fluid mixes into it over the time that it passes a cell, and the friction of a plane
+/// gap, 12 nu u / gap^2.
+std::array<Real, 3> CutFlow::in_gap(const CutCells& cut, const GhostCell& g, const Triple& held,
+                                    const std::array<FieldView, 3>& u,
+                                    const WallTurbulence& turbulence) const {
+  const CutCell& c = cut.cells[static_cast<std::size_t>(cut.index(g.i, g.j, g.k) - 1)];
+  const CutCell& carrier = cut.cells[static_cast<std::size_t>(c.carrier)];
+  Real wetted = 0;
+  for (int w = c.first_wall; w < c.first_wall + c.walls; ++w)
+    wetted += norm(cut.walls[static_cast<std::size_t>(w)].area);
+  const Real width = width_along_normal(grid_, c), volume = static_cast<Real>(grid_.volume(c.i, c.j, c.k));
+  const Real gap = Real(2) * c.fluid * volume / std::max(wetted, kNearest * volume / width);
+  const Real nu = turbulence.density.origin ? nu_ / turbulence.density(carrier.i, carrier.j, carrier.k) : nu_;
+  const Real mixes = step_ * norm(held) / width, rubs = Real(12) * step_ * nu / (gap * gap);
+  Triple value;
+  for (std::size_t e = 0; e < 3; ++e)
+    value[e] = (held[e] + mixes * u[e](carrier.i, carrier.j, carrier.k) + rubs * g.solid[e]) /
+               (Real(1) + mixes + rubs);
+  return value;
+}
+
 void CutFlow::extend(const CutCells& cut, const std::array<FieldView, 3>& u,
                      const WallTurbulence& turbulence) {
   for_each_index(static_cast<int>(cut.ghosts.size()), [&](int n) {
     const GhostCell& g = cut.ghosts[static_cast<std::size_t>(n)];
     Triple& value = values_[static_cast<std::size_t>(n)];
     value = g.solid;
-    if (thin(cut, g)) {
-      // Between walls closer than a cell: what the carrier's fluid mixes in over the time that it passes a
-      // cell, and the friction of a plane gap.
-      const CutCell& c = cut.cells[static_cast<std::size_t>(cut.index(g.i, g.j, g.k) - 1)];
-      const CutCell& carrier = cut.cells[static_cast<std::size_t>(c.carrier)];
-      const Triple& held = held_[static_cast<std::size_t>(n)];
-      Real wetted = 0;
-      for (int at = c.first_wall; at < c.first_wall + c.walls; ++at)
-        wetted += norm(cut.walls[static_cast<std::size_t>(at)].area);
-      const Real width = width_along_normal(grid_, c),
-                 volume = static_cast<Real>(grid_.volume(c.i, c.j, c.k));
-      const Real gap = Real(2) * c.fluid * volume / std::max(wetted, kNearest * volume / width);
-      const Real mixes = step_ * norm(held) / width, rubs = Real(12) * step_ * nu_ / (gap * gap);
-      for (std::size_t e = 0; e < 3; ++e)
-        value[e] = (held[e] + mixes * u[e](carrier.i, carrier.j, carrier.k) + rubs * g.solid[e]) /
-                   (Real(1) + mixes + rubs);
-      return;
-    }
+    if (thin(cut, g)) value = in_gap(cut, g, held_[static_cast<std::size_t>(n)], u, turbulence);
     if (g.donors == 0) return;
     const auto from = [&](ConstFieldView f) { return from_donors(g, f); };
     Triple w{from(u[0]) - g.solid[0], from(u[1]) - g.solid[1], from(u[2]) - g.solid[2]};

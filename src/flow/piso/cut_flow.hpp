@@ -98,6 +98,9 @@ class CutFlow {
   void list_closed_ends(const CutCells& cut);
   /// Whether a small cell lies between walls so close that no cell of the fluid tells what moves in it.
   bool thin(const CutCells& cut, const GhostCell& g) const;
+  /// The velocity there.
+  std::array<Real, 3> in_gap(const CutCells& cut, const GhostCell& g, const std::array<Real, 3>& held,
+                             const std::array<FieldView, 3>& u, const WallTurbulence& turbulence) const;
   /// There only the pressure moves the fluid.
   void push_thin(const CutCells& cut, ConstFieldView p, Real dt);
   const Grid& grid_;
