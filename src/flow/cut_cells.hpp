@@ -81,6 +81,11 @@ struct CutCells {
   bool empty() const { return cells.empty() && ghosts.empty(); }
   /// Whether another cell carries the momentum of cells[n].
   bool small(std::size_t n) const { return cells[n].carrier >= 0 && cells[n].carrier != static_cast<int>(n); }
+  /// The small cell there; null: none is.
+  const CutCell* small_at(int i, int j, int k) const {
+    const int n = index(i, j, k) - 1;
+    return n >= 0 && small(static_cast<std::size_t>(n)) ? &cells[static_cast<std::size_t>(n)] : nullptr;
+  }
 };
 
 }  // namespace ejecta

@@ -20,24 +20,31 @@ inline Real face_area_of(const GridMetrics& m, int d, const std::array<int, 3>& 
   return m[s].area[at[s]] * m[a].volume[at[a]] * m[b].volume[at[b]];
 }
 
-/// visit(member, d, face, neighbour, sign, open part, whole area) for the open faces of a carrier and of the
-/// cells it carries; sign: +1 where the face is the member's upper one.
+/// visit(cell, d, face, neighbour, sign, open part, whole area) for the open faces of one cell; sign: +1
+/// where the face is its upper one.
+template <class Visit>
+void for_each_open_face_of(const Grid& grid, const GridMetrics& metrics, const CutCells& cut,
+                           const CutCell& c, const Visit& visit) {
+  for (int side = 0; side < 6; ++side) {
+    const int d = side / 2, up = side % 2;
+    if (!grid.active(d)) continue;
+    std::array<int, 3> face{c.i, c.j, c.k}, beyond = face;
+    face[static_cast<std::size_t>(d)] += up;
+    beyond[static_cast<std::size_t>(d)] += up ? 1 : -1;
+    const Real open = Real(1) - cut.closed[static_cast<std::size_t>(d)](face[0], face[1], face[2]);
+    if (open > Real(0))
+      visit(c, d, face, beyond, up ? Real(1) : Real(-1), open, face_area_of(metrics, d, face));
+  }
+}
+
+/// The same for a carrier and the cells it carries.
 template <class Visit>
 void for_each_open_face(const Grid& grid, const CutCells& cut, const CutCell& carrier, const Visit& visit) {
   const GridMetrics metrics = metrics_of(grid);
-  for (int n = carrier.first_member; n < carrier.first_member + carrier.members; ++n) {
-    const CutCell& c = cut.cells[static_cast<std::size_t>(cut.members[static_cast<std::size_t>(n)])];
-    for (int side = 0; side < 6; ++side) {
-      const int d = side / 2, up = side % 2;
-      if (!grid.active(d)) continue;
-      std::array<int, 3> face{c.i, c.j, c.k}, beyond = face;
-      face[static_cast<std::size_t>(d)] += up;
-      beyond[static_cast<std::size_t>(d)] += up ? 1 : -1;
-      const Real open = Real(1) - cut.closed[static_cast<std::size_t>(d)](face[0], face[1], face[2]);
-      if (open > Real(0))
-        visit(c, d, face, beyond, up ? Real(1) : Real(-1), open, face_area_of(metrics, d, face));
-    }
-  }
+  for (int n = carrier.first_member; n < carrier.first_member + carrier.members; ++n)
+    for_each_open_face_of(grid, metrics, cut,
+                          cut.cells[static_cast<std::size_t>(cut.members[static_cast<std::size_t>(n)])],
+                          visit);
 }
 
 /// visit(cell, its carrier) for the small cells, one after the other.

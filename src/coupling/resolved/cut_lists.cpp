@@ -117,20 +117,17 @@ void CutMap::add_cut_cell(std::span<const Record> records, CutCells& out) {
   for (const Record& r : records) solid += 1.0 - part_fluid(r);
   edge_of_.push_back(records.size() == 1 ? nearest.edge : 0.0f);
   c.fluid = static_cast<Real>(std::max(1.0 - solid, 1e-4));
+  c.first_wall = static_cast<int>(out.walls.size());
+  const Metrics m[3] = {grid_.metrics(0), grid_.metrics(1), grid_.metrics(2)};
+  const double volume = grid_.volume(c.i, c.j, c.k);
+  const int at[3] = {c.i, c.j, c.k};
   for (std::size_t d = 0; d < 3; ++d) {
     if (!grid_.active(int(d))) continue;
     float closed[2] = {0, 0};
     for (const Record& r : records)
       for (std::size_t up = 0; up < 2; ++up) closed[up] += r.closed[2 * d + up];
-    c.middle[d] = middle_of(c.fluid, Real(1) - closed[0], Real(1) - closed[1]) *
-                  grid_.metrics(int(d)).width[d == 0   ? c.i
-                                              : d == 1 ? c.j
-                                                       : c.k];
+    c.middle[d] = middle_of(c.fluid, Real(1) - closed[0], Real(1) - closed[1]) * m[d].width[at[d]];
   }
-  c.first_wall = static_cast<int>(out.walls.size());
-  const Metrics m[3] = {grid_.metrics(0), grid_.metrics(1), grid_.metrics(2)};
-  const double volume = grid_.volume(c.i, c.j, c.k);
-  const int at[3] = {c.i, c.j, c.k};
   Vec3 whole{0, 0, 0}, sum{0, 0, 0};  // what closes the open faces; what the bodies say
   double total = 0.0;
   for (int d = 0; d < 3; ++d) {
@@ -334,8 +331,8 @@ int CutMap::carrier_of(const CutCell& c, CutCells& out) const {
 /// A cell at an edge of a body: its faces may be open although a wall stands right behind them. The part of a
 /// face that has a wall behind it counts as open in the measure of the room between both; the rest is closed,
 /// and is wall to the cell beyond. Not so the face towards the carrier, or where there is none along the
-/// normal. (An air stream turned round the edges of a box through
-/// such faces: its drag fell by half as its faces went from a face of the grid to just behind it.)
+/// normal. (An air stream turned round the edges of a box through such faces: its drag fell by half as its
+/// faces went from a face of the grid to just behind it.)
 void CutMap::close_dead_ends(CutCells& out) const {
   struct Change {
     CutFace face;

@@ -88,30 +88,25 @@ void CutFlow::resume() {
 }
 
 bool CutFlow::thin(const CutCells& cut, const GhostCell& g) const {
-  const int index = cut.index(g.i, g.j, g.k);
-  return g.donors == 0 && index > 0 && cut.small(static_cast<std::size_t>(index - 1));
+  return g.donors == 0 && cut.small_at(g.i, g.j, g.k);
 }
 
 void CutFlow::push_thin(const CutCells& cut, ConstFieldView p, Real dt) {
+  const GridMetrics metrics = metrics_of(grid_);
   for_each_index(static_cast<int>(cut.ghosts.size()), [&](int n) {
     const GhostCell& g = cut.ghosts[static_cast<std::size_t>(n)];
     if (!thin(cut, g)) return;
-    const Cell at{g.i, g.j, g.k};
-    for (std::size_t d = 0; d < 3; ++d) {
-      if (!grid_.active(static_cast<int>(d))) continue;
-      const Metrics m = grid_.metrics(static_cast<int>(d));
-      Real sum = 0, total = 0;
-      for (int up = 0; up < 2; ++up) {
-        Cell face = at, beyond = at;
-        face[d] += up;
-        beyond[d] += up ? 1 : -1;
-        const Real open = Real(1) - cut.closed[d](face[0], face[1], face[2]);
-        const Real change = p(beyond[0], beyond[1], beyond[2]) - p(at[0], at[1], at[2]);
-        sum += open * (up ? change : -change) * m.inv_distance[face[d]];
-        total += open;
-      }
-      if (total > Real(0)) held_[static_cast<std::size_t>(n)][d] -= dt * sum / total;
-    }
+    Triple sum{0, 0, 0}, total{0, 0, 0};
+    for_each_open_face_of(
+        grid_, metrics, cut, *cut.small_at(g.i, g.j, g.k),
+        [&](const CutCell& c, int d, const Cell& face, const Cell& beyond, Real sign, Real open, Real) {
+          const std::size_t s = static_cast<std::size_t>(d);
+          const Real change = p(beyond[0], beyond[1], beyond[2]) - p(c.i, c.j, c.k);
+          sum[s] += sign * open * change * metrics[s].inv_distance[face[s]];
+          total[s] += open;
+        });
+    for (std::size_t d = 0; d < 3; ++d)
+      if (total[d] > Real(0)) held_[static_cast<std::size_t>(n)][d] -= dt * sum[d] / total[d];
   });
 }
 
@@ -293,7 +288,7 @@ Vec3 CutFlow::pressure_on_closed(ConstFieldView p) const {
 std::array<Real, 3> CutFlow::in_gap(const CutCells& cut, const GhostCell& g, const Triple& held,
                                     const std::array<FieldView, 3>& u,
                                     const WallTurbulence& turbulence) const {
-  const CutCell& c = cut.cells[static_cast<std::size_t>(cut.index(g.i, g.j, g.k) - 1)];
+  const CutCell& c = *cut.small_at(g.i, g.j, g.k);
   const CutCell& carrier = cut.cells[static_cast<std::size_t>(c.carrier)];
   Real wetted = 0;
   for (int w = c.first_wall; w < c.first_wall + c.walls; ++w)
@@ -334,11 +329,10 @@ void CutFlow::extend(const CutCells& cut, const std::array<FieldView, 3>& u,
     for (std::size_t e = 0; e < 3; ++e) value[e] += g.ratio * through * g.normal[e] + tangential * along[e];
     // A small cell comes to this in the time that the stream takes to pass its fluid: one that has just
     // become small would shake the pressure otherwise.
-    const int index = cut.index(g.i, g.j, g.k);
-    if (index <= 0 || !cut.small(static_cast<std::size_t>(index - 1))) return;
-    const CutCell& c = cut.cells[static_cast<std::size_t>(index - 1)];
-    const Real width = width_along_normal(grid_, c);
-    const Real rate = step_ * (norm(w) + nu / width) / (width * std::max(c.fluid, kNearest));
+    const CutCell* small = cut.small_at(g.i, g.j, g.k);
+    if (!small) return;
+    const Real width = width_along_normal(grid_, *small);
+    const Real rate = step_ * (norm(w) + nu / width) / (width * std::max(small->fluid, kNearest));
     const Triple& held = held_[static_cast<std::size_t>(n)];
     for (std::size_t e = 0; e < 3; ++e) value[e] = (held[e] + rate * value[e]) / (Real(1) + rate);
   });
@@ -361,22 +355,19 @@ void CutFlow::move_small(const CutCells& cut, const std::array<ConstFieldView, 3
     Real out = 0, across = 0;
     std::size_t along = 0;
     Cell between{};
-    for (int side = 0; side < 6; ++side) {
-      const std::size_t d = static_cast<std::size_t>(side / 2);
-      if (!grid_.active(side / 2)) continue;
-      Cell face = at;
-      face[d] += side % 2;
-      const Real open = Real(1) - cut.closed[d](face[0], face[1], face[2]);
-      const Real area = (side % 2 ? open : -open) * face_area_of(metrics, side / 2, face);
-      if (to[d] - at[d] == (side % 2 ? 1 : -1)) {
-        across = area;
-        along = d;
-        between = face;
-        if (open < kLeast) return;
-      } else {
-        out += area * (q[d](face[0], face[1], face[2]) - solid[d]);
-      }
-    }
+    for_each_open_face_of(
+        grid_, metrics, cut, c,
+        [&](const CutCell&, int d, const Cell& face, const Cell& beyond, Real sign, Real open, Real area) {
+          const std::size_t s = static_cast<std::size_t>(d);
+          if (beyond != to) {
+            out += sign * open * area * (q[s](face[0], face[1], face[2]) - solid[s]);
+          } else if (open >= kLeast) {
+            across = sign * open * area;
+            along = s;
+            between = face;
+          }
+        });
+    if (across == Real(0)) return;
     for (int w = c.first_wall; w < c.first_wall + c.walls; ++w) {
       const CutWall& wall = cut.walls[static_cast<std::size_t>(w)];
       for (std::size_t d = 0; d < 3; ++d) out += wall.area[d] * (wall.velocity[d] - solid[d]);

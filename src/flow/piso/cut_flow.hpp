@@ -28,9 +28,8 @@ class CutFlow {
   /// viscosity: m2/s, of a gas Pa s.
   CutFlow(const Grid& grid, double viscosity);
 
-  /// New cells, for a step of dt s; p over density moves what gaps thinner than a cell hold (null: nothing
-  /// does): volumes of fluid, and the momentum over density (m4/s) that their change
-  /// puts into the sums.
+  /// New cells, for a step of dt s: volumes of fluid, and the momentum over density (m4/s) that their change
+  /// puts into the sums. p over density moves what gaps thinner than a cell hold; null: nothing does.
   Vec3 begin(const CutCells& cut, const std::array<ConstFieldView, 3>& u, ConstFieldView p, double dt);
   /// Part of a cell's volume whose momentum it carries: 1 in plain fluid, 0 in solids.
   ConstFieldView carried() const { return carried_.view(); }

@@ -74,10 +74,6 @@ void CutPressure::begin(const CutCells& cut, const Boundaries& boundaries) {
     if (boundaries.prescribed_on(f.d, {f.i, f.j, f.k})) continue;
     add_coupling(f.d, {f.i, f.j, f.k}, f.closed);
   }
-  const auto small = [&](const std::array<int, 3>& at) {
-    const int index = cut.index(at[0], at[1], at[2]);
-    return index > 0 && cut.small(static_cast<std::size_t>(index - 1));
-  };
   for_each_small(cut, [&](const CutCell& c, const CutCell&) {
     for (int side = 0; side < 6; ++side) {
       const std::size_t d = static_cast<std::size_t>(side / 2);
@@ -93,7 +89,8 @@ void CutPressure::begin(const CutCells& cut, const Boundaries& boundaries) {
       }
       const bool inside = beyond[d] >= 0 && beyond[d] < n;
       if (boundaries.prescribed_on(side / 2, face)) continue;
-      if (side % 2 == 0 || !inside || !small(beyond)) add_coupling(side / 2, face, Real(0));
+      if (side % 2 == 0 || !inside || !cut.small_at(beyond[0], beyond[1], beyond[2]))
+        add_coupling(side / 2, face, Real(0));
     }
   });
   boundaries.for_each_prescribed(
