@@ -67,11 +67,9 @@ EJECTA_KERNEL TurbulencePair advance_k_epsilon(const TurbulencePoint& p, Real dt
   const Real rate = p.e / p.k, loss = compressible ? dilatation_dissipation(p.k, p.sound_squared) : Real(1);
   const Real gain = made.strain + positive(made.dilatation) * p.k, lost = positive(-made.dilatation);
   const Real own = bounded ? 1 / time : rate;
-  Real pope = 0;
-  if (round_jet) pope = kC3 * time * time * time * vortex_stretching(p.gradient);
+  const Real pope = round_jet ? pope_gain(time, vortex_stretching(p.gradient)) : Real(0);
   return {(p.k + dt * gain) / (1 + dt * (rate * loss + lost)),
-          (p.e + dt * own * (kC1 * gain + positive(pope) * p.e)) /
-              (1 + dt * (own * (kC2 + positive(-pope)) + kC1 * lost))};
+          (p.e + dt * own * (kC1 * gain + pope * p.e)) / (1 + dt * (own * kC2 + kC1 * lost))};
 }
 
 /// Sources of k-omega SST over dt; `cross` is (1 - F1) times the cross-diffusion, 1/s2.

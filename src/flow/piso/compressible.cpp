@@ -170,9 +170,7 @@ void Compressible::smooth_increments(double dt, const CutCells& cut) {
                   IncrementKernel{u.view(), start.view(), u_[kRho].view(), eddy_viscosity_.view(),
                                   increment.view(), geometry_.axis(0).inv_radius_centre,
                                   c == kU ? Real(2 * dt) : Real(0), Real(options_.viscosity)});
-    IncrementSmoother::Base base{start.view(), Real(1), start.view(), Real(0)};
-    if (c == kK || c == kE) base.least = 0;
-    smoother_.apply(increment.view(), base);
+    smoother_.apply(increment.view(), {start.view(), Real(1), start.view(), Real(0), c == kK || c == kE});
     std::swap(increment, u);
   }
   for_each_cell(grid_.range(), PrimitiveKernel<P>{view_block<const Real>(u_), view_block<Real>(w_), gas_});

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/simd.hpp"
+#include "flow/stencil.hpp"
 
 namespace ejecta {
 namespace {
@@ -106,9 +107,9 @@ void IncrementSmoother::with_cut_lines(FieldView delta, int axis, int first, int
     for (int m = 0; m < n; ++m) {
       Real sum = values[m];
       if (base) {
-        if (base->a != Real(0)) sum += base->a * base->one.origin[at + m * step];
-        sum += base->b * base->two.origin[at + m * step];
-        if (sum < base->least) sum = base->least;
+        Real before = base->b * base->two.origin[at + m * step];
+        if (base->a != Real(0)) before += base->a * base->one.origin[at + m * step];
+        sum = base->positive ? positive_sum(before, sum) : before + sum;
       }
       delta.origin[at + m * step] = sum;
     }
@@ -203,15 +204,14 @@ void IncrementSmoother::smooth_z_and_add(FieldView delta, int j0, int j1, const 
       Real* row = delta.row(j, k);
       const Real* two = base.two.row(j, k);
       const Real* one = base.a == Real(0) ? two : base.one.row(j, k);  // not needed: not fetched either
-      const Real a = base.a, b = base.b, least = base.least;
+      const Real a = base.a, b = base.b;
       if (k > 0 && active_[2])
         for_each_lane(0, nx_,
                       [row, above = f.above[static_cast<std::size_t>(k - 1)],
                        below = delta.row(j, k - 1)](int i) { below[i] -= above * row[i]; });
-      for_each_lane(0, nx_, [=](int i) {
-        const Real sum = row[i] + a * one[i] + b * two[i];
-        row[i] = sum < least ? least : sum;  // NaN stays
-      });
+      if (base.positive)
+        for_each_lane(0, nx_, [=](int i) { row[i] = positive_sum(a * one[i] + b * two[i], row[i]); });
+      else for_each_lane(0, nx_, [=](int i) { row[i] += a * one[i] + b * two[i]; });
     }
 }
 

@@ -1,6 +1,5 @@
 #pragma once
 #include <array>
-#include <limits>
 #include <vector>
 
 #include "flow/cut_cells.hpp"
@@ -24,13 +23,13 @@ class IncrementSmoother {
   /// nu dt, m2. Lines of cells that solids cut are smoothed on their own: nothing passes closed faces, and
   /// what is kept is the sum over the fluid. `carried`: part of a cell's volume that counts, 0 in solids.
   void prepare(double nu_dt, const CutCells& cut, ConstFieldView carried);
-  /// What the smoothed increment is added to, a one + b two, and the smallest value of the sum.
+  /// What the smoothed increment is added to, a one + b two; `positive`: it is and stays so (positive_sum).
   struct Base {
     ConstFieldView one;
     Real a;
     ConstFieldView two;
     Real b;
-    Real least = std::numeric_limits<Real>::lowest();
+    bool positive = false;
   };
   /// delta becomes base + smoothed delta.
   void apply(FieldView delta, const Base& base) const;

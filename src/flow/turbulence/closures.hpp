@@ -36,11 +36,12 @@ inline Real eddy_viscosity(Real k, Real epsilon, Real longest) {
   return kCmu * k * std::min(k / epsilon, longest);
 }
 
-/// chi = tau^3 W_ij W_jk S_ki, tau = k / epsilon; Pope's term in the epsilon equation is C3 chi epsilon^2 /
-/// k. `longest` bounds tau where turbulence is far from equilibrium (see longest_time).
-inline Real pope_chi(Real k, Real epsilon, Real stretching, Real longest) {
-  const Real tau = std::min(k / epsilon, longest);
-  return tau * tau * tau * stretching;
+/// Pope's term in the epsilon equation over epsilon^2 / k: C3 chi, chi = tau^3 W_ij W_jk S_ki, with tau the
+/// turbulent time, s. Of vortices that are stretched alone: as a sink, where they are compressed, it grows
+/// like 1 / epsilon, so that epsilon reaches zero after a finite time and k has no bound. That is the wake of
+/// a body.
+inline Real pope_gain(Real tau, Real stretching) {
+  return kC3 * tau * tau * tau * std::max(stretching, Real(0));
 }
 
 /// The largest turbulent time scale whose eddy viscosity C_mu k tau leaves every normal stress positive,

@@ -49,8 +49,8 @@ void TwoEquation::advance_cut_cells(const CutCells& cut, const std::array<ConstF
     if (sst) p.f1 = f1_(c.i, c.j, c.k);
     const SourceResult r = sst ? advance_wall_sources<true>(grid_, cut, c, u, p, nu_, dt)
                                : advance_wall_sources<false>(grid_, cut, c, u, p, nu_, dt);
-    k_new_(c.i, c.j, c.k) = increments ? r.k - k0 : r.k;
-    second_new_(c.i, c.j, c.k) = increments ? r.second - s0 : r.second;
+    k_new_(c.i, c.j, c.k) = increments ? r.k - k0 : positive_sum(k0, r.k - k0);
+    second_new_(c.i, c.j, c.k) = increments ? r.second - s0 : positive_sum(s0, r.second - s0);
   });
   for_each_index(static_cast<int>(cut.ghosts.size()), [&](int n) {
     const GhostCell& g = cut.ghosts[static_cast<std::size_t>(n)];

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/parallel.hpp"
 #include "flow/turbulence/closures.hpp"
 
 namespace ejecta {
@@ -24,7 +25,8 @@ struct SourcePoint {
   Real f1, gradients;              ///< SST alone: blending, grad k . grad omega / omega
 };
 
-/// k and epsilon (or omega) after the sources of a step dt, sinks implicit so that both stay positive.
+/// k and epsilon (or omega) after the sources of a step dt, sinks implicit; still to be kept positive, as
+/// what diffused out of the cell is explicit.
 struct SourceResult {
   Real k, second;
 };
@@ -44,16 +46,12 @@ EJECTA_KERNEL SourceResult advance_sources(const SourcePoint& p, Real dt) {
     using namespace k_epsilon;
     const Real longest = longest_time(std::sqrt(p.strain2));
     const Real rate = p.second / p.k, own_rate = std::max(rate, Real(1) / longest);
-    Real gain = kC1 * p.produced, loss = kC2;
-    if constexpr (kRound) {
-      const Real pope = kC3 * pope_chi(p.k, p.second, p.stretching, longest);
-      gain += std::max(pope, Real(0)) * p.second;
-      loss += std::max(-pope, Real(0));
-    }
+    Real gain = kC1 * p.produced;
+    if constexpr (kRound) gain += pope_gain(std::min(p.k / p.second, longest), p.stretching) * p.second;
     k1 = (p.k_carried + dt * p.produced) / (Real(1) + dt * rate);
-    s1 = (p.second_carried + dt * own_rate * gain) / (Real(1) + dt * loss * own_rate);
+    s1 = (p.second_carried + dt * own_rate * gain) / (Real(1) + dt * kC2 * own_rate);
   }
-  return {std::max(k1, kMinimalK), std::max(s1, kMinimalSecond)};
+  return {k1, s1};
 }
 
 }  // namespace ejecta

@@ -122,10 +122,10 @@ void transport(const Grid& grid, const ScalarFlux<kSst>& face, const std::array<
             }
             if constexpr (kRound) p.stretching = vortex_stretching(v);
             const auto [k1, s1] = advance_sources<kSst, kRound>(p, dt);
-            out_k[i] = unfinished ? k1 - k0 : k1;
-            out_second[i] = unfinished ? s1 - s0 : s1;
-            const Real rate_of_strain = std::sqrt(strain2), kn = unfinished ? k0 : k1,
-                       sn = unfinished ? s0 : s1;
+            out_k[i] = unfinished ? k1 - k0 : positive_sum(k0, k1 - k0);
+            out_second[i] = unfinished ? s1 - s0 : positive_sum(s0, s1 - s0);
+            const Real rate_of_strain = std::sqrt(strain2), kn = unfinished ? k0 : out_k[i],
+                       sn = unfinished ? s0 : out_second[i];
             if constexpr (kSst) {
               using namespace k_omega_sst;
               const Real d = std::min(std::min(distance_x[i], distance_jk), from_solid[i]);
@@ -241,8 +241,8 @@ void TwoEquation::advance(const Boundaries& b, const std::array<ConstFieldView, 
   else run(std::false_type{}, std::false_type{});
   advance_cut_cells(cut, u, q, dt, smoother != nullptr);
   if (smoother) {
-    smoother->apply(k_new_.view(), {k_.view(), Real(1), k_.view(), Real(0), kMinimalK});
-    smoother->apply(second_new_.view(), {second_.view(), Real(1), second_.view(), Real(0), kMinimalSecond});
+    smoother->apply(k_new_.view(), {k_.view(), Real(1), k_.view(), Real(0), true});
+    smoother->apply(second_new_.view(), {second_.view(), Real(1), second_.view(), Real(0), true});
   }
   std::swap(k_, k_new_);
   std::swap(second_, second_new_);

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "flow/cut_geometry.hpp"
+#include "flow/stencil.hpp"
 #include "flow/turbulence/gradient.hpp"
 #include "flow/turbulence/sources.hpp"
 #include "flow/turbulence/wall_law.hpp"
@@ -40,8 +41,8 @@ SourceResult advance_wall_sources(const Grid& grid, const CutCells& cut, const C
   p.strain2 = strain_squared(gradient_row(grid, u, c.j, c.k)(c.i));
   p.produced =
       (Real(1) - share) * p.eddy_viscosity * p.strain2 + (area > Real(0) ? share * at_wall / area : Real(0));
-  p.k_carried = std::max(p.k_carried, kMinimalK);
-  p.second_carried = std::max(p.second_carried, kMinimalSecond);
+  p.k_carried = positive_sum(p.k, p.k_carried - p.k);
+  p.second_carried = positive_sum(p.second, p.second_carried - p.second);
   SourceResult r = advance_sources<kSst, false>(p, dt);
   // Its wall rules the dissipation of a cell at the rate of its turbulence, at once where it runs all across.
   const Real at_wall_second =
