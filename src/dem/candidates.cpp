@@ -54,6 +54,7 @@ void CandidateSearch::add_images(const Domain& domain, double skin) {
         NeighbourSearch::Item item = items_[n];
         part.image = true;
         part.shift[c] += side * domain.period[c];
+        part.which += (side > 0 ? 1 : 2) * (c == 0 ? 1 : c == 1 ? 3 : 9);
         item.centre[c] += side * domain.period[c];
         items_.push_back(item);
         part_of_.push_back(part);
@@ -61,26 +62,59 @@ void CandidateSearch::add_images(const Domain& domain, double skin) {
   }
 }
 
-void CandidateSearch::list_walls(std::span<const Wall> walls, int balls, double skin) {
-  for (std::size_t n = 0; n < items_.size() && !part_of_[n].image; ++n) {
+void CandidateSearch::put(std::size_t item, const PartKey& wall, int balls) {
+  SolidPair& pair = solids_.emplace_back();
+  pair.a = key_of(part_of_[item].index, balls);
+  pair.b = wall;
+  pair.b.image = part_of_[item].which;
+  pair.body_a = items_[item].body;
+  pair.shift = -part_of_[item].shift;
+}
+
+/// Balls meet triangles, polytopes the regions they lie in; but where nothing else of the surface is near a
+/// ball than the inside of a flat piece, it is a plane.
+void CandidateSearch::list_surface(const Wall& wall, int index, const Domain& domain, std::size_t n, int balls,
+                                   double skin) {
+  const NeighbourSearch::Item& item = items_[n];
+  const Surface& surface = *wall.surface;
+  const double reach = item.radius + skin;
+  near_.clear();
+  surface.near(item.centre, reach, [&](int t) {
+    const auto& c = surface.triangles()[static_cast<std::size_t>(t)].corners;
+    const double height = surface.triangles()[static_cast<std::size_t>(t)].normal.dot(item.centre - c[0]);
+    if (std::abs(height) < reach &&
+        (nearest_on_triangle(item.centre, c[0], c[1], c[2]).point - item.centre).squaredNorm() < reach * reach)
+      near_.push_back(t);
+  });
+  if (near_.empty()) return;
+  const auto region_of = [&](int t) { return surface.triangles()[static_cast<std::size_t>(t)].region; };
+  if (part_of_[n].index < balls) {
+    for (const int t : near_) put(n, {PartKind::wall_triangle, index, t}, balls);
+    return;
+  }
+  for (int& t : near_) t = region_of(t);
+  std::sort(near_.begin(), near_.end());
+  near_.erase(std::unique(near_.begin(), near_.end()), near_.end());
+  for (const int r : near_) put(n, {PartKind::wall_region, index, r}, balls);
+}
+
+void CandidateSearch::list_walls(std::span<const Wall> walls, const Domain& domain, int balls, double skin) {
+  for (std::size_t n = 0; n < items_.size(); ++n) {
     if (!part_of_[n].can_be_pushed) continue;
     const NeighbourSearch::Item& item = items_[n];
-    const int part = part_of_[n].index;
-    const auto list = [&](const PartKey& wall) {
-      SolidPair& pair = solids_.emplace_back();
-      pair.a = key_of(part, balls);
-      pair.b = wall;
-      pair.body_a = item.body;
-    };
+    const bool ball = part_of_[n].index < balls;
     for (int w = 0; w < static_cast<int>(walls.size()); ++w) {
       const Wall& wall = walls[static_cast<std::size_t>(w)];
-      if (wall.is_plane && wall.normal.dot(item.centre) - wall.offset < item.radius + skin) {
-        if (part < balls) planes_.emplace_back(part, w);
-        else list({PartKind::wall_plane, w, 0});
+      if (wall.is_plane) {
+        if (part_of_[n].image || !(wall.normal.dot(item.centre) - wall.offset < item.radius + skin)) continue;
+        if (ball) planes_.emplace_back(part_of_[n].index, w);
+        else put(n, {PartKind::wall_plane, w, 0}, balls);
+      } else if (ball || wall.solids.empty()) {
+        list_surface(wall, w, domain, n, balls, skin);
+      } else {
+        for (int s = 0; s < static_cast<int>(wall.solids.size()); ++s)
+          if (near_solid(item, wall.solids[static_cast<std::size_t>(s)], skin)) put(n, {PartKind::wall_solid, w, s}, balls);
       }
-      for (int s = 0; s < static_cast<int>(wall.solids.size()); ++s)
-        if (near_solid(item, wall.solids[static_cast<std::size_t>(s)], skin))
-          list({PartKind::wall_solid, w, s});
     }
   }
 }
@@ -109,7 +143,7 @@ void CandidateSearch::find(const Parts& parts, std::span<const Body> bodies, std
       pair.shift = b.shift - a.shift;
     }
   }
-  list_walls(walls, balls, skin);
+  list_walls(walls, domain, balls, skin);
   const auto before = [](const SolidPair& p, const SolidPair& q) {
     return std::tie(p.a, p.b) < std::tie(q.a, q.b);
   };

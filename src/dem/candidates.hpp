@@ -17,7 +17,7 @@ class CandidateSearch {
   void find(const Parts& parts, std::span<const Body> bodies, std::span<const Wall> walls,
             const Domain& domain, double skin);
   std::span<const std::pair<int, int>> balls() const { return balls_; }    ///< indices of balls
-  std::span<const std::pair<int, int>> planes() const { return planes_; }  ///< ball, wall that is a plane
+  std::span<const std::pair<int, int>> planes() const { return planes_; }  ///< ball, wall plane
   std::vector<SolidPair>& solids() { return solids_; }
 
  private:
@@ -26,16 +26,20 @@ class CandidateSearch {
     int index = 0;  // of a ball, or of a polytope after all balls
     bool can_be_pushed = true, image = false;
     Vec3 shift{0, 0, 0};  // m, from the part to its image
+    int which = 0;        // of the images: a digit 0, 1, 2 for each direction
   };
   void list_parts(const Parts& parts, std::span<const Body> bodies);
   void add_images(const Domain& domain, double skin);
-  void list_walls(std::span<const Wall> walls, int balls, double skin);
+  void list_walls(std::span<const Wall> walls, const Domain& domain, int balls, double skin);
+  void list_surface(const Wall& wall, int index, const Domain& domain, std::size_t item, int balls, double skin);
+  void put(std::size_t item, const PartKey& wall, int balls);
 
   NeighbourSearch search_;
   std::vector<NeighbourSearch::Item> items_;
   std::vector<Part> part_of_;  // each item
   std::vector<std::pair<int, int>> balls_, planes_;
   std::vector<SolidPair> solids_;
+  std::vector<int> near_;
 };
 
 }  // namespace ejecta

@@ -232,7 +232,7 @@ void Particles::find_contacts(double dt) {
     balls_.compute(parts_, materials_, domain_, dt);
   }
   ScopedTimer timer(times_.solids);
-  solids_.compute(parts_, bodies_, walls_, materials_, velocity_, spin_, dt);
+  solids_.compute(parts_, bodies_, walls_, materials_, domain_, velocity_, spin_, dt);
   collect_solids();
 }
 

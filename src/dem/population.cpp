@@ -133,7 +133,7 @@ void Particles::require_apart() {
            wall_name(w), wall.normal);
   }
   for (const SolidPair& p : search_.solids()) {
-    const Touch t = find_touch(p, parts_, bodies_, walls_);
+    const Touch t = find_touch(p, parts_, bodies_, walls_, domain_);
     if (!(t.overlap > 0)) continue;
     const std::string other = p.body_b >= 0 ? name(p.body_b) : wall_name(p.b.index);
     report(t.thickness > 0 ? t.thickness : t.overlap, t.size, p.body_a, other, t.normal);

@@ -70,9 +70,9 @@ TrianglePoint nearest_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b, c
 
 NearestPoint nearest_on_polytope(const Polytope& p, const Vec3& point) {
   NearestPoint inside{-std::numeric_limits<double>::infinity(), Vec3::UnitZ()};
-  for (const Polytope::Face& f : p.faces) {
-    const double d = f.normal.dot(point) - f.offset;
-    if (d > inside.distance) inside = {d, f.normal};
+  for (std::size_t n = 0; n < p.faces.size(); ++n) {
+    const double d = p.faces[n].normal.dot(point) - p.faces[n].offset;
+    if (d > inside.distance) inside = {d, p.faces[n].normal, static_cast<int>(n)};
   }
   if (inside.distance <= 0) return inside;
   Vec3 nearest = point;
@@ -90,7 +90,7 @@ NearestPoint nearest_on_polytope(const Polytope& p, const Vec3& point) {
     }
   }
   const double distance = std::sqrt(best);
-  return {distance, distance > 0 ? Vec3((point - nearest) / distance) : inside.normal};
+  return {distance, distance > 0 ? Vec3((point - nearest) / distance) : inside.normal, inside.face};
 }
 
 Vec3 support_polytope(const Polytope& p, const Vec3& direction) {

@@ -7,6 +7,11 @@
 
 namespace ejecta {
 
+struct HalfSpace {
+  Vec3 normal{0, 0, 1};  ///< unit, outward
+  double offset = 0.0;   ///< m, normal . x < offset inside
+};
+
 /// A convex solid bounded by flat faces. Lengths in m.
 struct Polytope {
   struct Face {
@@ -41,6 +46,7 @@ TrianglePoint nearest_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b, c
 struct NearestPoint {
   double distance = 0.0;  ///< signed, m
   Vec3 normal{0, 0, 1};   ///< unit, outward
+  int face = 0;           ///< whose plane the point lies farthest before (or least behind)
 };
 /// Exact signed distance of a point and its gradient.
 NearestPoint nearest_on_polytope(const Polytope& p, const Vec3& point);
