@@ -167,6 +167,7 @@ void BallContacts::compute_groups(const Parts& parts, const Materials& materials
       c.mass = radii * both;
       arms = (a.radius - 0.5 * c.overlap) * a.spin + (b.radius - 0.5 * c.overlap) * b.spin;
     }
+    c.share = 1.0 - lanes_at(history_[kElsewhere], n);
     // Velocity at the contact point: arms are -arm_a n from a and +arm_b n from b.
     c.velocity = a.velocity - b.velocity - cross(arms, c.normal);
     return c;
@@ -178,6 +179,7 @@ void BallContacts::compute_groups(const Parts& parts, const Materials& materials
       store3(history_, n, {});
       if constexpr (Rolling) store3(history_ + 3, n, {});
       if constexpr (Rolling) store3(moments_, n, {});
+      lanes_at(history_[kElsewhere], n) = Lanes{};
     } else {
       const PairConstants<Lanes> p =
           one_material ? constants : load_constants(materials, balls, others, a_.data() + n, b_.data() + n);
@@ -230,6 +232,30 @@ void BallContacts::compute(const Parts& parts, const Materials& materials, const
   else
     rolling_ ? compute_all<HertzMindlin, true>(parts, materials, domain, dt)
              : compute_all<HertzMindlin, false>(parts, materials, domain, dt);
+  share_energy(parts, domain);
+}
+
+/// What a group stores against the motion along the normal of each of its contacts.
+void BallContacts::share_energy(const Parts& parts, const Domain& domain) {
+  const auto normal_of = [&](int n) -> Vec3 {
+    const BallRow& a = parts.row(a_[at(n)]);
+    if (n >= planes_from_) return planes_[at(b_[at(n)])].centre();
+    return domain.nearest(a.centre() - parts.row(b_[at(n)]).centre()).normalized();
+  };
+  for_each_block(static_cast<int>(groups_.size()) - 1, kBlock, [&](int, int begin, int end) {
+    for (int g = begin; g < end; ++g)
+      for (int i = groups_[at(g)]; i < groups_[at(g + 1)]; ++i) {
+        const int n = grouped_[at(i)];
+        history_[kElsewhere][at(n)] = 0.0;
+        if (!(rows_[at(n)].half_overlap > 0)) continue;
+        const Vec3 normal = normal_of(n);
+        double others = 0.0;
+        for (int k = groups_[at(g)]; k < groups_[at(g + 1)]; ++k)
+          if (const int m = grouped_[at(k)]; m != n && rows_[at(m)].half_overlap > 0)
+            others += rows_[at(m)].elastic * std::max(0.0, normal.dot(normal_of(m)));
+        if (others > 0) history_[kElsewhere][at(n)] = others / (others + rows_[at(n)].elastic);
+      }
+  });
 }
 
 double BallContacts::wall_power() const {

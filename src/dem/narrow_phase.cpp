@@ -48,11 +48,12 @@ Touch touch_ball_triangle(const BallRow& ball, const Vec3& centre, const Surface
   const TrianglePoint nearest = nearest_on_triangle(centre, f.corners[0], f.corners[1], f.corners[2]);
   const bool on_face = nearest.feature == TriangleFeature::face;
   if (!on_face || side == 0) side = height < 0 ? -1 : 1;
-  if (on_face && side < 0 && surface.closed()) return {};
   const Vec3 out = centre - nearest.point;
-  const double distance = on_face ? side * height : out.norm();
+  const bool ghost = on_face && side < 0 && !surface.two_sided();
+  const double distance = ghost ? std::abs(height) : on_face ? side * height : out.norm();
   Touch t = touch_ball(ball, distance, on_face || !(distance > 0) ? Vec3(side * f.normal) : Vec3(out / distance));
   t.on_face = on_face;
+  t.ghost = ghost && t.overlap > 0;
   t.side = side;
   return t;
 }
@@ -131,8 +132,8 @@ Touch touch_region(const PolytopePart& part, const Body& body, const Vec3& posit
   if (!known) {
     if (std::abs(height) >= solid.radius) return {};
     side = height < 0 ? -1 : 1;
-    if (side < 0 && surface.closed()) return {};
   }
+  const bool ghost = side < 0 && !surface.two_sided();
   Overlap sum;
   thread_local std::vector<HalfSpace> planes;
   const auto add_plane = [&](const Vec3& normal, double offset) {
@@ -152,7 +153,12 @@ Touch touch_region(const PolytopePart& part, const Body& body, const Vec3& posit
     sum.depth += o.volume * o.depth;
     sum.first += o.first;
   }
-  if (!(sum.volume > 0) || (!known && !(sum.first > 0))) return {};
+  if (!(sum.volume > 0) || ((!known || ghost) && !(sum.first > 0))) return {};
+  if (ghost) {
+    Touch t;
+    t.side = side;
+    return t;
+  }
   sum.centroid /= sum.volume;
   sum.depth /= sum.volume;
   sum.area = std::max(sum.first, 1e-6 * std::pow(sum.volume, 2.0 / 3.0)) * (turn.transpose() * Vec3(side * region.plane.normal));

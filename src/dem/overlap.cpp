@@ -118,6 +118,17 @@ Vec3 add_faces(Scratch& s, Sums& sums, bool& started, const Polytope& p, const M
   return total;
 }
 
+/// Vector area of the seams of p (moved) within s.planes.
+Vec3 seams_within(Scratch& s, const Polytope& p, const Mat3& rotation, const Vec3& shift) {
+  Vec3 total(0, 0, 0);
+  Sums unused;
+  for (const Polytope::Face& f : p.seams) {
+    load_face(s, p, f, rotation, shift);
+    if (clip_all(s, s.planes, kNone)) total += unused.add(s.polygon);
+  }
+  return total;
+}
+
 }  // namespace
 
 Overlap overlap_half_space(const Polytope& a, const Vec3& normal, double offset) {
@@ -150,12 +161,18 @@ Overlap overlap_polytopes(const Polytope& a, const Polytope& b, const Mat3& rota
   const double hair = 1e-10 * (a.radius + b.radius);
   if (!planes_near(a, Mat3::Identity(), Vec3(0, 0, 0), hair, centre_b, b.radius, s.planes)) return o;
   const Vec3 area_b = add_faces(s, sums, started, b, rotation, translation, 0.0);
+  const Vec3 seams_b = seams_within(s, b, rotation, translation);
   if (!planes_near(b, rotation, translation, 0.0, a.centre, a.radius, s.planes)) return o;
   const Vec3 area_a = add_faces(s, sums, started, a, Mat3::Identity(), Vec3(0, 0, 0), hair);
   if (!(sums.volume > 0)) return {};
   o.volume = sums.volume;
   o.centroid = sums.apex + sums.moment / sums.volume;
-  o.area = 0.5 * (area_b - area_a);
+  // The two areas are opposite, but where a seam takes part only the other solid's is all surface.
+  const Vec3 seams_a = seams_within(s, a, Mat3::Identity(), Vec3(0, 0, 0));
+  const bool cut_a = !seams_a.isZero(), cut_b = !seams_b.isZero();
+  o.area = cut_a == cut_b ? Vec3(0.5 * ((area_b - seams_b) - (area_a - seams_a)))
+           : cut_b        ? Vec3(area_b - seams_b)
+                          : Vec3(seams_a - area_a);
   return o;
 }
 

@@ -112,6 +112,19 @@ void SolidContacts::set_pairs(std::vector<SolidPair>& pairs) {
   arrange();
 }
 
+void SolidContacts::hand_over(int ball, int wall, const Vec3& normal, const std::array<double, 6>& friction) {
+  const PartKey a{PartKind::ball, ball}, b{PartKind::wall_triangle, wall};
+  const auto found = std::lower_bound(pairs_.begin(), pairs_.end(), std::pair(a, b), [](const SolidPair& p, const auto& key) {
+    return std::pair(p.a, p.b) < key;
+  });
+  if (found == pairs_.end() || found->a != a || found->b.kind != b.kind || found->b.index != wall) return;
+  ContactHistory& h = found->history;
+  if (h.touched()) return;
+  h.normal = triple(normal);
+  h.slip = {friction[0], friction[1], friction[2]};
+  h.roll = {friction[3], friction[4], friction[5]};
+}
+
 void SolidContacts::arrange() {
   const int count = static_cast<int>(pairs_.size());
   const auto pair = [&](int n) -> const SolidPair& { return pairs_[static_cast<std::size_t>(n)]; };
@@ -155,17 +168,22 @@ void SolidContacts::choose(const World& world, int begin, int end) {
     const Vec3 foot = p.touch.point + 0.5 * p.touch.overlap * p.touch.normal;
     return distance_to(q, foot, world.parts, world.bodies, world.walls) <= 1e-6 * radius + slack;
   };
-  std::size_t chosen = 0;
+  thread_local std::vector<int> chosen;
+  chosen.clear();
   for (std::size_t n = 0; n < deepest.size(); ++n) {
     SolidPair& p = pair(deepest[n]);
-    for (std::size_t m = 0; m < n && !p.hidden; ++m) p.hidden = on_rim_of(p, pair(deepest[m]));
-    for (std::size_t m = 0; m < chosen && !p.hidden; ++m)
-      p.hidden = pair(deepest[m]).touch.normal.dot(p.touch.normal) > kSameWay;
-    if (!p.hidden) std::swap(deepest[chosen++], deepest[n]);
+    for (std::size_t m = 0; m < n && !p.hidden; ++m) {
+      const Touch& q = pair(deepest[m]).touch;
+      p.hidden = on_rim_of(p, pair(deepest[m]));
+      if (p.hidden) p.touch.side = q.side;  // the surface goes on there, with the same sides
+    }
+    for (std::size_t m = 0; m < chosen.size() && !p.hidden; ++m)
+      p.hidden = pair(chosen[m]).touch.normal.dot(p.touch.normal) > kSameWay;
+    if (!p.hidden) chosen.push_back(deepest[n]);
   }
-  for (std::size_t n = 0; n < chosen; ++n) {
-    SolidPair& p = pair(deepest[n]);
-    if (p.history.touched()) continue;
+  for (const int n : chosen) {
+    SolidPair& p = pair(n);
+    if (p.history.touched() || p.touch.ghost) continue;
     for (int m = begin; m < end; ++m) {
       ContactHistory& h = pair(m).history;
       if (!h.touched() || (pair(m).touch.overlap > 0 && !pair(m).hidden)) continue;
@@ -189,11 +207,11 @@ void SolidContacts::apply_laws(const World& world, int begin, int end, double dt
     p.force.setZero();
     p.moment.setZero();
     p.stored = p.elastic = p.wall_power = 0.0;
-    if (p.hidden) p.touch.overlap = 0.0;
+    if (p.hidden || p.touch.ghost) p.touch.overlap = 0.0;
     meetings.emplace_back();
     if (!(p.touch.overlap > 0)) {
       p.history = {};
-      if (p.hidden) p.history.side = p.touch.side;
+      p.history.side = p.touch.side;
       continue;
     }
     Meeting& m = meetings.back() = world.meet(p);

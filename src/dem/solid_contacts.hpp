@@ -35,6 +35,7 @@ struct Touch {
   int side = 0;               ///< of a surface on which a is: 1, -1
   int face = -1;              ///< of a polytope before which a ball is
   bool on_face = false;       ///< of a triangle: the ball stands on its inside, not on its rim
+  bool ghost = false;         ///< a meets a side that does not touch
 };
 
 /// What changes in time along a contact.
@@ -84,6 +85,10 @@ class SolidContacts {
         add(p.body_b, Vec3(-p.force), Vec3(-p.moment), Vec3(p.touch.point - p.shift), p.touch);
     }
   }
+
+  /// A ball's friction with a wall (slip and roll, x, y, z each), from where it was a plane to the ball, goes to
+  /// the triangles that it meets now.
+  void hand_over(int ball, int wall, const Vec3& normal, const std::array<double, 6>& friction);
 
   std::span<const SolidPair> pairs() const { return pairs_; }
   double elastic() const;

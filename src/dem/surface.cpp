@@ -69,12 +69,26 @@ double area_of(const std::vector<Vec3>& polygon, const Vec3& normal) {
 
 }  // namespace
 
-Surface::Surface(const TriangleMesh& mesh) {
+Surface::Surface(const TriangleMesh& mesh, bool two_sided) {
   double largest = 0.0;
   for (const Vec3& v : mesh.vertices) largest = std::max(largest, v.cwiseAbs().maxCoeff());
   tolerance_ = kDigits * largest;
   find_regions(mesh);
   build_tree();
+  two_sided_ = two_sided && !closed_;
+}
+
+bool Surface::Region::holds(const Vec3& point, double margin) const {
+  return std::any_of(pieces.begin(), pieces.end(), [&](const Piece& piece) {
+    const Vec3 out = point - piece.centre;
+    if (out.squaredNorm() >= piece.radius * piece.radius) return false;
+    for (std::size_t c = 0; c < piece.corners.size(); ++c) {
+      const Vec3& from = piece.corners[c];
+      const Vec3 along = piece.corners[(c + 1) % piece.corners.size()] - from;
+      if (along.cross(plane.normal).dot(point - from) > -margin * along.norm()) return false;
+    }
+    return true;
+  });
 }
 
 void Surface::find_regions(const TriangleMesh& mesh) {
@@ -290,7 +304,8 @@ void Surface::build_tree() {
 /// By the solid angle of the triangles, 4 pi from inside (van Oosterom & Strackee 1983, IEEE Trans. Biomed.
 /// Eng. 30:125).
 bool Surface::contains(const Vec3& point) const {
-  if (!closed_) return false;
+  const Node& all = nodes_.front();
+  if (!closed_ || (point.array() < all.low.array()).any() || (point.array() > all.high.array()).any()) return false;
   double angle = 0.0;
   for (const Triangle& t : triangles_) {
     const Vec3 a = t.corners[0] - point, b = t.corners[1] - point, c = t.corners[2] - point;

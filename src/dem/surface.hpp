@@ -8,8 +8,8 @@
 
 namespace ejecta {
 
-/// A surface of triangles as bodies meet it: what counts is where it lies, not how it is divided. It has two
-/// sides, unless it is closed: then it bounds a solid, which touches with its outer side. World axes.
+/// A surface of triangles as bodies meet it: what counts is where it lies, not how it is divided. It touches
+/// on the side to which its normals look, an open one on both if so asked. World axes.
 class Surface {
  public:
   struct Triangle {
@@ -29,11 +29,15 @@ class Surface {
   struct Region {
     HalfSpace plane;
     std::vector<Piece> pieces;
+    /// Whether a point of the plane lies in the region and farther than `margin` from its rim. (Between two
+    /// of its pieces it may be said not to.)
+    bool holds(const Vec3& point, double margin) const;
   };
 
-  explicit Surface(const TriangleMesh& mesh);
+  explicit Surface(const TriangleMesh& mesh, bool two_sided = false);
 
   bool closed() const { return closed_; }
+  bool two_sided() const { return two_sided_; }
   std::span<const Triangle> triangles() const { return triangles_; }
   std::span<const Region> regions() const { return regions_; }
   double tolerance() const { return tolerance_; }  ///< m, what the digits of a file may move a corner
@@ -57,7 +61,7 @@ class Surface {
   std::vector<Node> nodes_;
   std::vector<int> order_;
   double tolerance_ = 0.0;
-  bool closed_ = false;
+  bool closed_ = false, two_sided_ = false;
 };
 
 template <class Visit>

@@ -63,10 +63,11 @@ Wall make_wall(const WallSpec& spec, const Materials& materials, const std::stri
       const std::string path = (std::filesystem::path(directory) / spec.file).string();
       const TriangleMesh mesh = read_stl(path, 1.0);
       require_area(mesh, path);
-      wall.surface = std::make_shared<Surface>(mesh);
+      wall.surface = std::make_shared<Surface>(mesh, spec.two_sided);
       if (const double volume = mass_mesh(mesh).volume; wall.surface->closed() && volume > 0) {
         wall.solids = convex_pieces(mesh);
         if (std::abs(volume_polytopes(wall.solids) - volume) > kSameVolume * volume) wall.solids.clear();
+        find_seams(wall.solids);
       }
       return wall;
     }

@@ -19,7 +19,15 @@ struct Wall {
   Vec3 normal{0, 0, 1};  ///< plane: unit, towards the bodies
   double offset = 0.0;   ///< plane: normal . x = offset on it
   std::shared_ptr<const Surface> surface;
+  int first_plane = 0;           ///< of its WallPlanes: of a surface two a region, its front and its back
   std::vector<Polytope> solids;  ///< what the surface bounds, where that is convex: so polytopes meet it
+};
+
+/// A plane as balls meet it: a wall's, or one side of a flat region of its surface.
+struct WallPlane {
+  Vec3 normal{0, 0, 1};
+  double offset = 0.0;
+  int wall = 0;
 };
 
 /// A [[wall]] entry. Throws InputError naming the wall.

@@ -37,6 +37,7 @@ Shape make_polytope_shape(std::vector<Polytope> parts, TriangleMesh surface, con
   data->frame = to_principal_axes(data->mass);
   const Mat3 turn = data->frame.rotation.conjugate().toRotationMatrix();
   for (Polytope& p : parts) p = moved(p, turn, -(turn * data->frame.centre));
+  find_seams(parts);
   for (Vec3& v : surface.vertices) {
     v = to_body(data->frame, v);
     data->bounding_radius = std::max(data->bounding_radius, v.norm());

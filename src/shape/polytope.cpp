@@ -10,6 +10,20 @@
 namespace ejecta {
 namespace {
 
+constexpr double kSeam = 1e-6;  // of the size: parts that are nearer lie on each other
+
+/// The part of a convex polygon within normal . x < offset.
+std::vector<Vec3> cut_polygon(const std::vector<Vec3>& polygon, const Vec3& normal, double offset) {
+  std::vector<Vec3> kept;
+  for (std::size_t n = 0; n < polygon.size(); ++n) {
+    const Vec3 &a = polygon[n], &b = polygon[(n + 1) % polygon.size()];
+    const double h = normal.dot(a) - offset, g = normal.dot(b) - offset;
+    if (h < 0) kept.push_back(a);
+    if ((h < 0) != (g < 0)) kept.push_back(a + h / (h - g) * (b - a));
+  }
+  return kept;
+}
+
 const Vec3& corner(const Polytope& p, const Polytope::Face& f, int n) {
   return p.vertices[static_cast<std::size_t>(p.corners[static_cast<std::size_t>(f.first + n)])];
 }
@@ -30,12 +44,39 @@ Polytope polytope_box(const Vec3& half) {
 Polytope moved(const Polytope& p, const Mat3& rotation, const Vec3& translation) {
   Polytope q = p;
   for (Vec3& v : q.vertices) v = rotation * v + translation;
-  for (Polytope::Face& f : q.faces) {
-    f.normal = rotation * f.normal;
-    f.offset += f.normal.dot(translation);
-  }
+  for (auto* faces : {&q.faces, &q.seams})
+    for (Polytope::Face& f : *faces) {
+      f.normal = rotation * f.normal;
+      f.offset += f.normal.dot(translation);
+    }
   q.centre = rotation * p.centre + translation;
   return q;
+}
+
+void find_seams(std::vector<Polytope>& parts) {
+  for (std::size_t n = 0; n < parts.size(); ++n)
+    for (std::size_t m = 0; m < parts.size(); ++m) {
+      Polytope& p = parts[n];
+      const Polytope& q = parts[m];
+      const double slack = kSeam * (p.radius + q.radius);
+      if (n == m || (p.centre - q.centre).norm() > p.radius + q.radius + slack) continue;
+      for (const Polytope::Face& f : p.faces) {
+        const double nearest = f.normal.dot(support_polytope(q, -f.normal));
+        if (std::abs(nearest - f.offset) > slack) continue;
+        std::vector<Vec3> shared;
+        for (int c = 0; c < f.count; ++c) shared.push_back(corner(p, f, c));
+        for (const Polytope::Face& g : q.faces)
+          if (g.normal.dot(f.normal) > -0.99) shared = cut_polygon(shared, g.normal, g.offset);
+        if (shared.size() < 3) continue;
+        p.seams.push_back(f);
+        p.seams.back().first = static_cast<int>(p.corners.size());
+        p.seams.back().count = static_cast<int>(shared.size());
+        for (const Vec3& v : shared) {
+          p.corners.push_back(static_cast<int>(p.vertices.size()));
+          p.vertices.push_back(v);
+        }
+      }
+    }
 }
 
 TriangleMesh triangles_of(const Polytope& p) {
