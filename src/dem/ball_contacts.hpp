@@ -64,7 +64,7 @@ class BallContacts {
   void arrange(Pairs balls, Pairs planes, int ball_count);
   void index_pairs(int balls);
   void group_pairs(const Parts& parts);
-  void share_energy(const Parts& parts, const Domain& domain);
+  void share_energy(const Parts& parts, const Materials& materials, const Domain& domain);
   static BallRow untouched();
   template <class Law, bool Rolling>
   void compute_all(const Parts& parts, const Materials& materials, const Domain& domain, double dt);
@@ -75,11 +75,10 @@ class BallContacts {
   // the wall as b, padded likewise.
   std::vector<int> a_, b_;
   int planes_from_ = 0;
-  /// Slip x, y, z, roll x, y, z, and the part of the energy that all contacts of the two bodies store which is
-  /// in others than this one (as at the last step: two bodies touch for many).
-  static constexpr std::size_t kRemembered = 7, kElsewhere = 6;
   std::vector<BallRow> planes_{1, untouched()};  // normal, offset, velocity, material; the last touches nothing
-  std::vector<double> history_[kRemembered];     // of each pair
+  static constexpr std::size_t kRemembered = 6;
+  std::vector<double> history_[kRemembered];  // slip x, y, z and roll x, y, z of each pair
+  std::vector<double> shares_;                // of the energy that all contacts of the two bodies store
   std::vector<int> last_a_, last_b_;        // before the pairs were set anew
   std::vector<double> last_history_[kRemembered];
   std::vector<PairRow> rows_;

@@ -128,6 +128,7 @@ void BallContacts::arrange(Pairs balls, Pairs planes, int ball_count) {
   refill(b_, total, static_cast<int>(planes_.size()) - 1);
   std::fill_n(b_.begin(), planes_from_, ball_count);
   for (auto& h : history_) refill(h, total, 0.0);
+  refill(shares_, total, 1.0);
   const auto put = [&](Pairs pairs, std::size_t from, std::size_t old, std::size_t old_end) {
     for (std::size_t n = 0; n < pairs.size(); ++n) {
       std::tie(a_[from + n], b_[from + n]) = pairs[n];

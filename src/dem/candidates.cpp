@@ -122,8 +122,10 @@ bool CandidateSearch::list_plane(const Wall& wall, int r, const Domain& domain, 
   if (!region.holds(foot, std::sqrt(std::max(0.0, reach * reach - height * height)))) return false;
   if (plane == back && !wall.surface->two_sided()) return std::abs(height) >= item.radius;
   // Of a ball and its images across periodic sides only one stands on the wall within the domain.
-  for (int c = 0; c < 3; ++c)
-    if (domain.period[c] > 0 && (foot[c] < domain.low[c] || foot[c] >= domain.high[c])) return true;
+  for (int c = 0; c < 3; ++c) {
+    const double slack = 1e-9 * domain.period[c];
+    if (domain.period[c] > 0 && (foot[c] < domain.low[c] - slack || foot[c] >= domain.high[c] - slack)) return true;
+  }
   planes_.emplace_back(ball, plane);
   return true;
 }

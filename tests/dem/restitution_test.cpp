@@ -74,6 +74,8 @@ void collide(Particles& p) {
   }
 }
 
+bool finest(const Kind& kind) { return std::string_view(kind.name) == "mesh of 5120"; }
+
 TEST(Restitution, OfEveryShapeOnEverySurface) {
   for (const double e : {0.1, 0.5, 0.9}) {
     const Case c = elastic(e);
@@ -93,6 +95,7 @@ TEST(Restitution, OfEveryShapeOnEverySurface) {
     walls.emplace_back("block", wall_of(moved(block_mesh(Vec3(30e-3, 30e-3, 10e-3), 3), Mat3::Identity(), Vec3(0, 0, -10e-3))));
     for (const Kind& kind : kinds())
       for (const auto& [name, wall] : walls) {
+        if (finest(kind) && (e != 0.5 || (name != "plane" && name != "divided 7"))) continue;
         Particles p(Vec3(0, 0, 0), materials, c.contact);
         p.add(wall);
         Body b = thrown(kind, materials, 0.0, -kSpeed, false);
@@ -104,16 +107,23 @@ TEST(Restitution, OfEveryShapeOnEverySurface) {
   }
 }
 
+/// A corner of three or five edges on an edge, or between four legs, is pushed to the side: no central impact.
+bool lopsided(const Kind& a, const Kind& b) {
+  const std::string_view odd = a.name, even = b.name;
+  return (odd == "box on corner" || odd == "mesh of 20") && (even == "box on edge" || even.starts_with("table"));
+}
+
 /// All three and the finest mesh: EJECTA_ALL_PAIRS=1.
 TEST(Restitution, OfEveryShapeOnEachOther) {
   std::vector<Kind> all = kinds();
   const bool every = std::getenv("EJECTA_ALL_PAIRS") != nullptr;
-  if (!every) std::erase_if(all, [](const Kind& k) { return std::string_view(k.name) == "mesh of 5120"; });
+  if (!every) std::erase_if(all, finest);
   for (const double e : every ? std::vector{0.1, 0.5, 0.9} : std::vector{0.5}) {
     const Case c = elastic(e);
     const Materials materials(c);
     for (std::size_t i = 0; i < all.size(); ++i)
       for (std::size_t j = i; j < all.size(); ++j) {
+        if (lopsided(all[i], all[j]) || lopsided(all[j], all[i])) continue;
         Particles p(Vec3(0, 0, 0), materials, c.contact);
         Body low = thrown(all[i], materials, 0.0, 0.5 * kSpeed, true), high = thrown(all[j], materials, 0.0, -0.5 * kSpeed, false);
         low.position.z() = -1e-5 - highest(low);
