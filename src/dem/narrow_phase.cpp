@@ -134,6 +134,10 @@ Touch touch_region(const PolytopePart& part, const Body& body, const Vec3& posit
     side = height < 0 ? -1 : 1;
   }
   const bool ghost = side < 0 && !surface.two_sided();
+  if (!known) {  // most regions near a body are not touched
+    const Vec3 down = turn.transpose() * Vec3(-side * region.plane.normal);
+    if (down.dot(support_polytope(solid, down)) <= down.dot(solid.centre) + std::abs(height)) return {};
+  }
   Overlap sum;
   thread_local std::vector<HalfSpace> planes;
   const auto add_plane = [&](const Vec3& normal, double offset) {

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "base/error.hpp"
+#include "shape/farthest.hpp"
 #include "shape/polytope.hpp"
 
 namespace ejecta {
@@ -232,9 +233,9 @@ Polytope convex_hull(const std::vector<Vec3>& points) {
   Polytope result = merge_faces(hull);
   result.centre = 0.5 * (low + high);
   for (const Vec3& v : result.vertices) result.radius = std::max(result.radius, (v - result.centre).norm());
+  const Farthest farthest(result.vertices);
   for (const Polytope::Face& f : result.faces)
-    if (!f.normal.allFinite() ||
-        f.normal.dot(support_polytope(result, f.normal)) > f.offset + 1e-6 * result.radius)
+    if (!f.normal.allFinite() || farthest.along(f.normal) > f.offset + 1e-6 * result.radius)
       throw InputError("the points are too nearly in a plane or line to span a solid");
   return result;
 }

@@ -5,6 +5,7 @@
 #include <limits>
 #include <numeric>
 
+#include "shape/farthest.hpp"
 #include "shape/mass_properties.hpp"
 
 namespace ejecta {
@@ -60,8 +61,9 @@ void find_seams(std::vector<Polytope>& parts) {
       const Polytope& q = parts[m];
       const double slack = kSeam * (p.radius + q.radius);
       if (n == m || (p.centre - q.centre).norm() > p.radius + q.radius + slack) continue;
+      const Farthest farthest(q.vertices);
       for (const Polytope::Face& f : p.faces) {
-        const double nearest = f.normal.dot(support_polytope(q, -f.normal));
+        const double nearest = -farthest.along(-f.normal);
         if (std::abs(nearest - f.offset) > slack) continue;
         std::vector<Vec3> shared;
         for (int c = 0; c < f.count; ++c) shared.push_back(corner(p, f, c));
@@ -148,8 +150,8 @@ double volume_polytopes(std::span<const Polytope> parts) {
 
 double width_polytope(const Polytope& p) {
   double width = std::numeric_limits<double>::infinity();
-  for (const Polytope::Face& f : p.faces)
-    width = std::min(width, f.offset - f.normal.dot(support_polytope(p, -f.normal)));
+  const Farthest farthest(p.vertices);
+  for (const Polytope::Face& f : p.faces) width = std::min(width, f.offset + farthest.along(-f.normal));
   return width;
 }
 
