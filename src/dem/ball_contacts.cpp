@@ -273,7 +273,8 @@ void BallContacts::share_energy(const Parts& parts, const Materials& materials, 
       for (std::size_t i = 0; i < springs.size(); ++i) {
         double all = 0.0;
         for (const Spring& s : springs) all += s.energy * std::max(0.0, s.normal.dot(springs[i].normal));
-        shares_[at(grouped_[static_cast<std::size_t>(groups_[at(g)]) + i])] = springs[i].energy > 0 ? springs[i].energy / all : 1.0;
+        shares_[at(grouped_[static_cast<std::size_t>(groups_[at(g)]) + i])] =
+            springs[i].energy > 0 ? springs[i].energy / all : 1.0;
       }
     }
   });

@@ -75,16 +75,17 @@ class BallContacts {
   // the wall as b, padded likewise.
   std::vector<int> a_, b_;
   int planes_from_ = 0;
-  std::vector<BallRow> planes_{1, untouched()};  // normal, offset, velocity, material; the last touches nothing
+  std::vector<BallRow> planes_{1,
+                               untouched()};  // normal, offset, velocity, material; the last touches nothing
   static constexpr std::size_t kRemembered = 6;
   std::vector<double> history_[kRemembered];  // slip x, y, z and roll x, y, z of each pair
   std::vector<double> shares_;                // of the energy that all contacts of the two bodies store
-  std::vector<int> last_a_, last_b_;        // before the pairs were set anew
+  std::vector<int> last_a_, last_b_;          // before the pairs were set anew
   std::vector<double> last_history_[kRemembered];
   std::vector<PairRow> rows_;
   std::vector<double> moments_[3];  // N m, rolling resistance on a
   std::vector<int> cursor_;
-  std::vector<int> first_, entries_;  // of each ball: 2 n for pair n as a, 2 n + 1 as b, in order
+  std::vector<int> first_, entries_;   // of each ball: 2 n for pair n as a, 2 n + 1 as b, in order
   std::vector<int> grouped_, groups_;  // pairs by the two bodies (all walls are one); where each group begins
   bool rolling_ = false;
 };

@@ -26,7 +26,7 @@ void CandidateSearch::list_body(int body, const Parts& parts, const Body& at) {
   const bool can_be_pushed = inverse_mass(at) > 0;
   for (int n = parts.first_ball(body); n < parts.first_ball(body + 1); ++n) {
     items_.push_back({parts.row(n).centre(), parts.row(n).radius, body});
-    part_of_.push_back({n, can_be_pushed});
+    part_of_.push_back({n, can_be_pushed, parts.ball_count(body) == 1});
   }
   for (int n = parts.first_polytope(body); n < parts.first_polytope(body + 1); ++n) {
     const Polytope& solid = *parts.polytope(n).solid;
@@ -76,8 +76,8 @@ void CandidateSearch::put(std::size_t item, const PartKey& wall, int balls) {
 
 /// Balls meet triangles, polytopes the regions they lie in; but where nothing else of the surface is near a
 /// ball than the inside of a flat piece, it is a plane.
-void CandidateSearch::list_surface(const Wall& wall, int index, const Domain& domain, std::size_t n, int balls,
-                                   double skin, const BallContacts* before) {
+void CandidateSearch::list_surface(const Wall& wall, int index, const Domain& domain, std::size_t n,
+                                   int balls, double skin, const BallContacts* before) {
   const NeighbourSearch::Item& item = items_[n];
   const Surface& surface = *wall.surface;
   const double reach = item.radius + skin;
@@ -86,7 +86,8 @@ void CandidateSearch::list_surface(const Wall& wall, int index, const Domain& do
     const auto& c = surface.triangles()[static_cast<std::size_t>(t)].corners;
     const double height = surface.triangles()[static_cast<std::size_t>(t)].normal.dot(item.centre - c[0]);
     if (std::abs(height) < reach &&
-        (nearest_on_triangle(item.centre, c[0], c[1], c[2]).point - item.centre).squaredNorm() < reach * reach)
+        (nearest_on_triangle(item.centre, c[0], c[1], c[2]).point - item.centre).squaredNorm() <
+            reach * reach)
       near_.push_back(t);
   });
   if (near_.empty()) return;
@@ -105,12 +106,15 @@ void CandidateSearch::list_surface(const Wall& wall, int index, const Domain& do
   for (const int r : near_) put(n, {PartKind::wall_region, index, r}, balls);
 }
 
-/// Whether the one region of a surface near a ball is a plane to it. One that it has dented deeply, from which
-/// side so ever, is left to the triangles, which remember the side.
+/// Whether the one region of a surface near a ball is a plane to it. One that it has dented deeply, from
+/// which side so ever, is left to the triangles, which remember the side.
 bool CandidateSearch::list_plane(const Wall& wall, int r, const Domain& domain, std::size_t n, double reach,
                                  const BallContacts* before) {
   const NeighbourSearch::Item& item = items_[n];
   const Surface::Region& region = wall.surface->regions()[static_cast<std::size_t>(r)];
+  // A plane of the image of a wall would be another plane. And a body of several balls has one dashpot: all
+  // of its contacts with the surface are kept together.
+  if (!part_of_[n].only_ball || std::abs(region.plane.normal.dot(part_of_[n].shift)) > 0) return false;
   const double height = region.plane.normal.dot(item.centre) - region.plane.offset;
   const Vec3 foot = item.centre - height * region.plane.normal;
   const int ball = part_of_[n].index, front = wall.first_plane + 2 * r, back = front + 1;
@@ -124,7 +128,8 @@ bool CandidateSearch::list_plane(const Wall& wall, int r, const Domain& domain, 
   // Of a ball and its images across periodic sides only one stands on the wall within the domain.
   for (int c = 0; c < 3; ++c) {
     const double slack = 1e-9 * domain.period[c];
-    if (domain.period[c] > 0 && (foot[c] < domain.low[c] - slack || foot[c] >= domain.high[c] - slack)) return true;
+    if (domain.period[c] > 0 && (foot[c] < domain.low[c] - slack || foot[c] >= domain.high[c] - slack))
+      return true;
   }
   planes_.emplace_back(ball, plane);
   return true;
@@ -146,7 +151,8 @@ void CandidateSearch::list_walls(std::span<const Wall> walls, const Domain& doma
         list_surface(wall, w, domain, n, balls, skin, before);
       } else {
         for (int s = 0; s < static_cast<int>(wall.solids.size()); ++s)
-          if (near_solid(item, wall.solids[static_cast<std::size_t>(s)], skin)) put(n, {PartKind::wall_solid, w, s}, balls);
+          if (near_solid(item, wall.solids[static_cast<std::size_t>(s)], skin))
+            put(n, {PartKind::wall_solid, w, s}, balls);
       }
     }
   }

@@ -30,7 +30,7 @@ class CandidateSearch {
   /// A part, or its image across a periodic side.
   struct Part {
     int index = 0;  // of a ball, or of a polytope after all balls
-    bool can_be_pushed = true, image = false;
+    bool can_be_pushed = true, only_ball = false, image = false;
     Vec3 shift{0, 0, 0};  // m, from the part to its image
     int which = 0;        // of the images: a digit 0, 1, 2 for each direction
   };
@@ -39,8 +39,8 @@ class CandidateSearch {
   void list_body(int body, const Parts& parts, const Body& at);
   void list_walls(std::span<const Wall> walls, const Domain& domain, int balls, double skin,
                   const BallContacts* before);
-  void list_surface(const Wall& wall, int index, const Domain& domain, std::size_t item, int balls, double skin,
-                    const BallContacts* before);
+  void list_surface(const Wall& wall, int index, const Domain& domain, std::size_t item, int balls,
+                    double skin, const BallContacts* before);
   bool list_plane(const Wall& wall, int region, const Domain& domain, std::size_t item, double reach,
                   const BallContacts* before);
   void put(std::size_t item, const PartKey& wall, int balls);

@@ -51,7 +51,8 @@ Touch touch_ball_triangle(const BallRow& ball, const Vec3& centre, const Surface
   const Vec3 out = centre - nearest.point;
   const bool ghost = on_face && side < 0 && !surface.two_sided();
   const double distance = ghost ? std::abs(height) : on_face ? side * height : out.norm();
-  Touch t = touch_ball(ball, distance, on_face || !(distance > 0) ? Vec3(side * f.normal) : Vec3(out / distance));
+  Touch t =
+      touch_ball(ball, distance, on_face || !(distance > 0) ? Vec3(side * f.normal) : Vec3(out / distance));
   t.on_face = on_face;
   t.ghost = ghost && t.overlap > 0;
   t.side = side;
@@ -121,8 +122,8 @@ Overlap overlap_solids(const Polytope& a, const Polytope& b, const Mat3& rotatio
 
 /// Of a polytope with what lies behind a region of a surface; z is measured from its plane. `side`: on which
 /// the polytope stood when it touched first, or 0.
-Touch touch_region(const PolytopePart& part, const Body& body, const Vec3& position, const Surface& surface, int n,
-                   int side) {
+Touch touch_region(const PolytopePart& part, const Body& body, const Vec3& position, const Surface& surface,
+                   int n, int side) {
   const Polytope& solid = *part.solid;
   const Surface::Region& region = surface.regions()[static_cast<std::size_t>(n)];
   const Mat3 turn = body.orientation.toRotationMatrix();
@@ -165,7 +166,8 @@ Touch touch_region(const PolytopePart& part, const Body& body, const Vec3& posit
   }
   sum.centroid /= sum.volume;
   sum.depth /= sum.volume;
-  sum.area = std::max(sum.first, 1e-6 * std::pow(sum.volume, 2.0 / 3.0)) * (turn.transpose() * Vec3(side * region.plane.normal));
+  sum.area = std::max(sum.first, 1e-6 * std::pow(sum.volume, 2.0 / 3.0)) *
+             (turn.transpose() * Vec3(side * region.plane.normal));
   Touch t = touch_of(sum, part.radius, turn, position);
   t.depth = sum.depth;
   t.side = side;
@@ -215,7 +217,8 @@ Touch find_touch(const SolidPair& pair, const Parts& parts, std::span<const Body
     const Vec3 foot = pair.a.kind == PartKind::ball ? Vec3(t.point + 0.5 * t.overlap * t.normal) : t.point;
     for (int c = 0; c < 3; ++c) {
       const double slack = 1e-9 * domain.period[c];
-      if (domain.period[c] > 0 && (foot[c] < domain.low[c] - slack || foot[c] > domain.high[c] + slack)) return {};
+      if (domain.period[c] > 0 && (foot[c] < domain.low[c] - slack || foot[c] > domain.high[c] + slack))
+        return {};
     }
     t.point += pair.shift;
     return t;
@@ -224,8 +227,8 @@ Touch find_touch(const SolidPair& pair, const Parts& parts, std::span<const Body
   const Mat3 other_turn = other.orientation.toRotationMatrix();
   const PolytopePart& other_part = parts.polytope(pair.b.index);
   if (pair.a.kind == PartKind::ball)
-    return touch_ball_polytope(parts.row(pair.a.index), *other_part.solid, other_turn, other.position + pair.shift,
-                               pair.history.face);
+    return touch_ball_polytope(parts.row(pair.a.index), *other_part.solid, other_turn,
+                               other.position + pair.shift, pair.history.face);
   const PolytopePart& part = parts.polytope(pair.a.index);
   const Body& body = bodies[static_cast<std::size_t>(pair.body_a)];
   const Mat3 turn = body.orientation.toRotationMatrix();

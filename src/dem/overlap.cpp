@@ -191,7 +191,8 @@ Overlap overlap_cell(const Polytope& a, std::span<const HalfSpace> planes) {
   const double hair = 1e-10 * a.radius;  // as in overlap_polytopes
   Sums sums;
   bool started = false;
-  if (!s.cell.empty()) sums.apex = a.centre + (s.cell[0].offset - s.cell[0].normal.dot(a.centre)) * s.cell[0].normal;
+  if (!s.cell.empty())
+    sums.apex = a.centre + (s.cell[0].offset - s.cell[0].normal.dot(a.centre)) * s.cell[0].normal;
   started = !s.cell.empty();  // on the first plane: its lid spans no volume
   s.planes = s.cell;
   add_faces(s, sums, started, a, Mat3::Identity(), Vec3(0, 0, 0), hair);

@@ -282,8 +282,11 @@ void Particles::note_friction() {
   for (const SolidPair& p : solids_.pairs()) {
     const ContactHistory& h = p.history;
     if (p.b.kind == PartKind::wall_triangle && h.touched())
-      friction_.push_back({p.a.index, p.b.index, Vec3(h.normal.x, h.normal.y, h.normal.z),
-                           {h.slip.x, h.slip.y, h.slip.z, h.roll.x, h.roll.y, h.roll.z}, false});
+      friction_.push_back({p.a.index,
+                           p.b.index,
+                           Vec3(h.normal.x, h.normal.y, h.normal.z),
+                           {h.slip.x, h.slip.y, h.slip.z, h.roll.x, h.roll.y, h.roll.z},
+                           false});
   }
   for (int n = 0; n < balls_.pair_count(); ++n) {
     const auto [ball, plane] = balls_.pair(n);
@@ -300,7 +303,8 @@ void Particles::pass_friction_on() {
     const int planes = 2 * static_cast<int>(wall.surface->regions().size());
     const int as_plane = balls_.find_plane(f.ball, wall.first_plane, wall.first_plane + planes);
     if (f.plane ? as_plane < 0 : as_plane >= 0 && balls_.friction(as_plane) == std::array<double, 6>{})
-      f.plane ? solids_.hand_over(f.ball, f.wall, f.normal, f.history) : balls_.set_friction(as_plane, f.history);
+      f.plane ? solids_.hand_over(f.ball, f.wall, f.normal, f.history)
+              : balls_.set_friction(as_plane, f.history);
   }
 }
 

@@ -86,8 +86,8 @@ class Particles {
   void place(int index, const Vec3& position, const Quat& orientation, const Vec3& velocity,
              const Vec3& angular_velocity);
 
-  /// Throws InputError naming the pair that overlaps most, if by more than a thousandth of its size, or a body
-  /// that is to enter where a wall is.
+  /// Throws InputError naming the pair that overlaps most, if by more than a thousandth of its size, or a
+  /// body that is to enter where a wall is.
   void require_apart();
   /// A sentence for each body that has been dented deeper than a tenth of its smallest width: springs stand
   /// for small dents.
@@ -124,7 +124,7 @@ class Particles {
   void pass_friction_on();
   /// How deep a body lies in something.
   struct Dent {
-    double overlap = 0.0;  // m; 0: nowhere by more than a thousandth of its size
+    double overlap = 0.0;     // m; 0: nowhere by more than a thousandth of its size
     int body = 0, other = 0;  // other: body, or -1 - n for wall n
     Vec3 normal{0, 0, 1};     // the way out
   };

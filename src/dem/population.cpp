@@ -92,7 +92,8 @@ void Particles::add(Wall wall) {
   if (wall.is_plane) planes_.push_back({wall.normal, wall.offset, index});
   else
     for (const Surface::Region& r : wall.surface->regions())
-      for (const double side : {1.0, -1.0}) planes_.push_back({side * r.plane.normal, side * r.plane.offset, index});
+      for (const double side : {1.0, -1.0})
+        planes_.push_back({side * r.plane.normal, side * r.plane.offset, index});
   walls_.push_back(std::move(wall));
   for (std::size_t n = static_cast<std::size_t>(walls_.back().first_plane); n < planes_.size(); ++n)
     balls_.add(planes_[n], walls_.back());
@@ -133,8 +134,8 @@ Particles::Dent Particles::deepest(const CandidateSearch& found) const {
   for (const SolidPair& p : found.solids()) {
     const Touch t = find_touch(p, parts_, bodies_, walls_, domain_);
     if (!(t.overlap > 0) || t.ghost) continue;
-    note(t.thickness > 0 ? t.thickness : t.overlap, t.size, p.body_a, p.body_b >= 0 ? p.body_b : -1 - p.b.index,
-         t.normal);
+    note(t.thickness > 0 ? t.thickness : t.overlap, t.size, p.body_a,
+         p.body_b >= 0 ? p.body_b : -1 - p.b.index, t.normal);
   }
   return worst;
 }
@@ -162,10 +163,11 @@ void Particles::require_clear(const Dent& dent, const char* when) const {
   if (!(dent.overlap > 0)) return;
   const auto other = dent.other < 0 ? walls_[static_cast<std::size_t>(-1 - dent.other)].name
                                     : bodies_[static_cast<std::size_t>(dent.other)].name;
-  throw InputError(fmt::format(
-      "body \"{}\" overlaps {} \"{}\" by {:.4g} mm {}; move it by at least that along ({:.3f}, {:.3f}, {:.3f})",
-      bodies_[static_cast<std::size_t>(dent.body)].name, dent.other < 0 ? "wall" : "body", other, 1e3 * dent.overlap,
-      when, dent.normal.x(), dent.normal.y(), dent.normal.z()));
+  throw InputError(
+      fmt::format("body \"{}\" overlaps {} \"{}\" by {:.4g} mm {}; move it by at least that along ({:.3f}, "
+                  "{:.3f}, {:.3f})",
+                  bodies_[static_cast<std::size_t>(dent.body)].name, dent.other < 0 ? "wall" : "body", other,
+                  1e3 * dent.overlap, when, dent.normal.x(), dent.normal.y(), dent.normal.z()));
 }
 
 void Particles::require_apart() {
@@ -173,7 +175,8 @@ void Particles::require_apart() {
   require_clear(deepest(search_), "at the start");
   for (std::size_t n = 0; n < bodies_.size(); ++n)
     if (bodies_[n].motion == Motion::free && presence_[n] != Presence::gone)
-      require_clear(deepest_in_walls(n), presence_[n] == Presence::here ? "at the start" : "where it is to enter");
+      require_clear(deepest_in_walls(n),
+                    presence_[n] == Presence::here ? "at the start" : "where it is to enter");
 }
 
 std::vector<std::string> Particles::deep_dents() const {
@@ -181,10 +184,11 @@ std::vector<std::string> Particles::deep_dents() const {
   for (std::size_t n = 0; n < bodies_.size(); ++n) {
     const double width = bodies_[n].shape.smallest_feature(), share = peaks_[n].overlap / width;
     if (!(share > kDeepDent)) continue;
-    sentences.push_back(fmt::format(
-        "body \"{}\" was dented by {:.3g} mm, {:.0f} % of its smallest width ({:.3g} mm): forces of contacts that "
-        "deep are not to be trusted; a larger youngs_modulus makes them shallower",
-        bodies_[n].name, 1e3 * peaks_[n].overlap, 100 * share, 1e3 * width));
+    sentences.push_back(
+        fmt::format("body \"{}\" was dented by {:.3g} mm, {:.0f} % of its smallest width ({:.3g} mm): forces "
+                    "of contacts that "
+                    "deep are not to be trusted; a larger youngs_modulus makes them shallower",
+                    bodies_[n].name, 1e3 * peaks_[n].overlap, 100 * share, 1e3 * width));
   }
   return sentences;
 }
@@ -211,8 +215,8 @@ std::vector<ContactRecord> Particles::contacts() const {
     const auto [a, b] = balls_.pair(n);
     const BallRow& ball = parts_.row(a);
     const WallPlane* plane = b < 0 ? &planes_[static_cast<std::size_t>(-1 - b)] : nullptr;
-    const Vec3 normal = plane ? plane->normal
-                              : domain_.nearest(ball.centre() - parts_.row(b).centre()).normalized();
+    const Vec3 normal =
+        plane ? plane->normal : domain_.nearest(ball.centre() - parts_.row(b).centre()).normalized();
     records.push_back({parts_.body_of_ball(a), plane ? -1 - plane->wall : parts_.body_of_ball(b),
                        ball.centre() - (ball.radius - row.half_overlap) * normal, normal,
                        Vec3(row.fx, row.fy, row.fz), 2 * row.half_overlap});

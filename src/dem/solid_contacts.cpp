@@ -9,10 +9,10 @@
 namespace ejecta {
 namespace {
 
-constexpr int kBlock = 32;            // pairs, or groups of them, one thread takes at a time
-constexpr double kSameWay = 0.906;    // cosine of 25 degrees: normals of one hollow
-constexpr double kLeastDepth = 0.5;   // energy of a flat contact over force x mean thickness: a face; to
-constexpr double kMostDepth = 0.75;   // that of a corner
+constexpr int kBlock = 32;           // pairs, or groups of them, one thread takes at a time
+constexpr double kSameWay = 0.906;   // cosine of 25 degrees: normals of one hollow
+constexpr double kLeastDepth = 0.5;  // energy of a flat contact over force x mean thickness: a face; to
+constexpr double kMostDepth = 0.75;  // that of a corner
 constexpr double kFirstDepth = 2 / 3.0;
 
 Triple<double> triple(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
@@ -82,7 +82,8 @@ struct SolidContacts::World {
   Meeting meet(const SolidPair& pair) const {
     const Touch& t = pair.touch;
     Meeting m;
-    m.a = pair.a.kind == PartKind::ball ? side_of_ball(pair.a.index, t.point) : side_of_body(pair.body_a, t.point);
+    m.a = pair.a.kind == PartKind::ball ? side_of_ball(pair.a.index, t.point)
+                                        : side_of_body(pair.body_a, t.point);
     if (pair.body_b >= 0) {
       m.b = side_of_body(pair.body_b, t.point - pair.shift);
     } else {
@@ -114,9 +115,9 @@ void SolidContacts::set_pairs(std::vector<SolidPair>& pairs) {
 
 void SolidContacts::hand_over(int ball, int wall, const Vec3& normal, const std::array<double, 6>& friction) {
   const PartKey a{PartKind::ball, ball}, b{PartKind::wall_triangle, wall};
-  const auto found = std::lower_bound(pairs_.begin(), pairs_.end(), std::pair(a, b), [](const SolidPair& p, const auto& key) {
-    return std::pair(p.a, p.b) < key;
-  });
+  const auto found =
+      std::lower_bound(pairs_.begin(), pairs_.end(), std::pair(a, b),
+                       [](const SolidPair& p, const auto& key) { return std::pair(p.a, p.b) < key; });
   if (found == pairs_.end() || found->a != a || found->b.kind != b.kind || found->b.index != wall) return;
   ContactHistory& h = found->history;
   if (h.touched()) return;
@@ -142,7 +143,8 @@ void SolidContacts::arrange() {
             [&](int n, int m) { return std::pair(bodies(n), n) < std::pair(bodies(m), m); });
   first_.clear();
   for (int n = 0; n < count; ++n)
-    if (n == 0 || bodies(order_[static_cast<std::size_t>(n)]) != bodies(order_[static_cast<std::size_t>(n - 1)]))
+    if (n == 0 ||
+        bodies(order_[static_cast<std::size_t>(n)]) != bodies(order_[static_cast<std::size_t>(n - 1)]))
       first_.push_back(n);
   first_.push_back(count);
 }
@@ -199,7 +201,9 @@ void SolidContacts::choose(const World& world, int begin, int end) {
 /// What a flat contact has stored: exactly that of a plane; else the work done on its spring, held between
 /// that of a face and that of a corner, so that nothing adds up in a contact that lasts.
 void SolidContacts::apply_laws(const World& world, int begin, int end, double dt) {
-  const auto pair = [&](int n) -> SolidPair& { return pairs_[static_cast<std::size_t>(order_[static_cast<std::size_t>(n)])]; };
+  const auto pair = [&](int n) -> SolidPair& {
+    return pairs_[static_cast<std::size_t>(order_[static_cast<std::size_t>(n)])];
+  };
   thread_local std::vector<Meeting> meetings;
   meetings.clear();
   for (int n = begin; n < end; ++n) {

@@ -40,12 +40,12 @@ struct Touch {
 
 /// What changes in time along a contact.
 struct ContactHistory {
-  Triple<double> slip, roll;   ///< m, rad
-  double twist = 0.0;          ///< rad
-  Triple<double> normal;       ///< at the last step; zero: they did not touch
-  int side = 0, face = -1;     ///< as in Touch
-  double energy = 0.0;         ///< J, that a flat contact has stored, from the work done on its spring
-  double power = 0.0;          ///< W, the rate of that at the last step
+  Triple<double> slip, roll;  ///< m, rad
+  double twist = 0.0;         ///< rad
+  Triple<double> normal;      ///< at the last step; zero: they did not touch
+  int side = 0, face = -1;    ///< as in Touch
+  double energy = 0.0;        ///< J, that a flat contact has stored, from the work done on its spring
+  double power = 0.0;         ///< W, the rate of that at the last step
   bool operator==(const ContactHistory&) const = default;
   bool touched() const { return dot(normal, normal) > 0; }
 };
@@ -86,8 +86,8 @@ class SolidContacts {
     }
   }
 
-  /// A ball's friction with a wall (slip and roll, x, y, z each), from where it was a plane to the ball, goes to
-  /// the triangles that it meets now.
+  /// A ball's friction with a wall (slip and roll, x, y, z each), from where it was a plane to the ball, goes
+  /// to the triangles that it meets now.
   void hand_over(int ball, int wall, const Vec3& normal, const std::array<double, 6>& friction);
 
   std::span<const SolidPair> pairs() const { return pairs_; }

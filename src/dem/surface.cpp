@@ -10,11 +10,12 @@
 namespace ejecta {
 namespace {
 
-constexpr double kDigits = 2e-6;    // of the largest coordinate: a text file with six digits, twice
-constexpr double kSameWay = 0.99;   // cosine; a sliver's normal is mostly round-off
-constexpr double kSameArea = 1e-4;  // a hull whose area exceeds that of the triangles by less is filled by them
-constexpr double kFold = -0.99;     // cosine; a surface that turns back more sharply ends there
-constexpr int kLeaf = 4;            // triangles in a box that is not divided
+constexpr double kDigits = 2e-6;   // of the largest coordinate: a text file with six digits, twice
+constexpr double kSameWay = 0.99;  // cosine; a sliver's normal is mostly round-off
+constexpr double kSameArea =
+    1e-4;                        // a hull whose area exceeds that of the triangles by less is filled by them
+constexpr double kFold = -0.99;  // cosine; a surface that turns back more sharply ends there
+constexpr int kLeaf = 4;         // triangles in a box that is not divided
 
 using Edge = std::pair<int, int>;
 
@@ -44,8 +45,7 @@ std::vector<Vec3> flat_hull(const std::vector<Vec3>& points, const Vec3& normal,
   for (int round = 0; round < 2; ++round) {
     const std::size_t start = hull.size();
     for (const Flat& f : flat) {
-      while (hull.size() >= start + 2 &&
-             outside(hull[hull.size() - 2], hull.back(), f) <= 0.0)
+      while (hull.size() >= start + 2 && outside(hull[hull.size() - 2], hull.back(), f) <= 0.0)
         hull.pop_back();
       hull.push_back(f);
     }
@@ -124,9 +124,9 @@ void Surface::find_regions(const TriangleMesh& mesh) {
   std::vector<std::vector<int>> groups;
   const auto lies_in = [&](int n, const Vec3& normal, double offset) {
     const Triangle& t = triangles_[at(n)];
-    return t.normal.dot(normal) > kSameWay && std::all_of(t.corners.begin(), t.corners.end(), [&](const Vec3& p) {
-             return std::abs(normal.dot(p) - offset) <= tolerance_;
-           });
+    return t.normal.dot(normal) > kSameWay &&
+           std::all_of(t.corners.begin(), t.corners.end(),
+                       [&](const Vec3& p) { return std::abs(normal.dot(p) - offset) <= tolerance_; });
   };
   for (const int seed : by_area) {
     if (triangles_[at(seed)].region >= 0) continue;
@@ -212,8 +212,8 @@ void Surface::find_regions(const TriangleMesh& mesh) {
       if (next == edges.end() || next->second.size() != 1) continue;
       const int own = triangles_[n].region, other = triangles_[at(next->second[0])].region;
       if (own != other)
-        turns[at(own)].push_back({triangles_[n].corners[c], triangles_[n].corners[(c + 1) % 3],
-                                  regions_[at(other)].plane.normal});
+        turns[at(own)].push_back(
+            {triangles_[n].corners[c], triangles_[n].corners[(c + 1) % 3], regions_[at(other)].plane.normal});
     }
   const auto add_piece = [&](std::size_t r, const std::vector<Vec3>& polygon) {
     Region& region = regions_[r];
@@ -305,7 +305,8 @@ void Surface::build_tree() {
 /// Eng. 30:125).
 bool Surface::contains(const Vec3& point) const {
   const Node& all = nodes_.front();
-  if (!closed_ || (point.array() < all.low.array()).any() || (point.array() > all.high.array()).any()) return false;
+  if (!closed_ || (point.array() < all.low.array()).any() || (point.array() > all.high.array()).any())
+    return false;
   double angle = 0.0;
   for (const Triangle& t : triangles_) {
     const Vec3 a = t.corners[0] - point, b = t.corners[1] - point, c = t.corners[2] - point;

@@ -7,8 +7,8 @@
 
 namespace ejecta {
 
-/// Finds the farthest of many points along a direction in a time that grows with the logarithm of their number:
-/// boxes of points, halved until few are left.
+/// Finds the farthest of many points along a direction in a time that grows with the logarithm of their
+/// number: boxes of points, halved until few are left.
 class Farthest {
  public:
   explicit Farthest(std::span<const Vec3> points) : points_(points.begin(), points.end()) {
@@ -51,10 +51,12 @@ class Farthest {
     const Node& n = nodes_[static_cast<std::size_t>(at)];
     if (bound(n, d) <= best) return;
     if (n.child == 0) {
-      for (int k = n.first; k < n.first + n.count; ++k) best = std::max(best, d.dot(points_[static_cast<std::size_t>(k)]));
+      for (int k = n.first; k < n.first + n.count; ++k)
+        best = std::max(best, d.dot(points_[static_cast<std::size_t>(k)]));
       return;
     }
-    const bool second = bound(nodes_[static_cast<std::size_t>(n.child + 1)], d) > bound(nodes_[static_cast<std::size_t>(n.child)], d);
+    const bool second = bound(nodes_[static_cast<std::size_t>(n.child + 1)], d) >
+                        bound(nodes_[static_cast<std::size_t>(n.child)], d);
     look(n.child + second, d, best);
     look(n.child + !second, d, best);
   }

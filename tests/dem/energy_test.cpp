@@ -41,14 +41,15 @@ struct Surfaces {
     for (Vec3& v : roof.vertices) v.z() = -0.5 * std::abs(v.x());
     for (Vec3& v : hollow.vertices) v.z() = 0.5 * std::abs(v.x());
     for (Vec3& v : bowl.vertices) v.z() = 10.0 * (v.x() * v.x() + v.y() * v.y());
-    all = {{"flat, 1", flat_mesh(1, 30e-3)},
-           {"flat, 12", flat_mesh(12, 30e-3)},
-           {"block", moved(block_mesh(Vec3(15e-3, 12e-3, 10e-3), 3), Mat3::Identity(), Vec3(0, 0, -10e-3))},
-           {"sheet", moved(block_mesh(Vec3(30e-3, 30e-3, 0.25e-3), 4), Mat3::Identity(), Vec3(0, 0, -0.25e-3))},
-           {"roof", roof},
-           {"hollow", hollow},
-           {"bowl", bowl},
-           {"table", moved(table_mesh(3, 40e-3), Mat3::Identity(), Vec3(0, 0, -16e-3))}};
+    all = {
+        {"flat, 1", flat_mesh(1, 30e-3)},
+        {"flat, 12", flat_mesh(12, 30e-3)},
+        {"block", moved(block_mesh(Vec3(15e-3, 12e-3, 10e-3), 3), Mat3::Identity(), Vec3(0, 0, -10e-3))},
+        {"sheet", moved(block_mesh(Vec3(30e-3, 30e-3, 0.25e-3), 4), Mat3::Identity(), Vec3(0, 0, -0.25e-3))},
+        {"roof", roof},
+        {"hollow", hollow},
+        {"bowl", bowl},
+        {"table", moved(table_mesh(3, 40e-3), Mat3::Identity(), Vec3(0, 0, -16e-3))}};
   }
 };
 
@@ -58,7 +59,8 @@ std::size_t pick(double u, std::size_t count) {
 
 Quat turn_of(const Draw& u, std::size_t first) {
   const Vec3 axis(u[first] - 0.5, u[first + 1] - 0.5, u[first + 2] - 0.5);
-  return axis.norm() > 1e-9 ? Quat(Eigen::AngleAxisd(2 * M_PI * u[first + 3], axis.normalized())) : Quat::Identity();
+  return axis.norm() > 1e-9 ? Quat(Eigen::AngleAxisd(2 * M_PI * u[first + 3], axis.normalized()))
+                            : Quat::Identity();
 }
 
 struct Outcome {
@@ -79,7 +81,8 @@ Outcome outcome(const Draw& u) {
   Particles p(gravity, materials, c.contact);
   std::ostringstream what;
   const bool convex = u[4] < 0.5;  // walls of the case file, or triangles
-  const Mat3 tilt = u[5] < 0.5 ? Mat3(Mat3::Identity()) : turn_of({0, u[6], 0.5 + u[6], 0.1 * u[7]}, 0).toRotationMatrix();
+  const Mat3 tilt =
+      u[5] < 0.5 ? Mat3(Mat3::Identity()) : turn_of({0, u[6], 0.5 + u[6], 0.1 * u[7]}, 0).toRotationMatrix();
   if (convex) {
     WallSpec w = floor_at(0);
     const std::size_t kind = pick(u[8], 3);
@@ -101,7 +104,8 @@ Outcome outcome(const Draw& u) {
     Body b = body_of(name, shape, materials);
     b.orientation = turn_of(u, n == 0 ? 14 : 15) * b.orientation;
     const double side = u[19] < 0.15 && !p.walls()[0].is_plane ? -1.0 : 1.0;  // from behind
-    b.position = Vec3(40e-3 * (u[20] - 0.5), 40e-3 * (u[21] - 0.5), 0) + Vec3(0, 0, side * (25e-3 + 22e-3 * n));
+    b.position =
+        Vec3(40e-3 * (u[20] - 0.5), 40e-3 * (u[21] - 0.5), 0) + Vec3(0, 0, side * (25e-3 + 22e-3 * n));
     b.velocity = Vec3(2 * (u[22] - 0.5), 2 * (u[23] - 0.5), -side * (0.1 + speed));
     b.angular_velocity = 50.0 * Vec3(u[24] - 0.5, u[22] - 0.5, u[23] - 0.5);
     p.add(b);
@@ -159,8 +163,8 @@ TEST(Energy, ComesFromNowhere) {
     if (!(o.gain > kAllowed)) continue;
     ++wrong;
     const Outcome least = outcome(shrunk(u));
-    ADD_FAILURE() << "scene " << n << " gains " << 100 * o.gain << " %: " << o.scene << "\n  as simple as it gets ("
-                  << 100 * least.gain << " %): " << least.scene;
+    ADD_FAILURE() << "scene " << n << " gains " << 100 * o.gain << " %: " << o.scene
+                  << "\n  as simple as it gets (" << 100 * least.gain << " %): " << least.scene;
   }
 }
 

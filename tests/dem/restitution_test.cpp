@@ -34,8 +34,10 @@ std::vector<Kind> kinds() {
   for (const int level : {0, 2, 4}) {
     TriangleMesh mesh = icosphere(level);
     for (Vec3& v : mesh.vertices) v *= 0.5 * kSize;
-    all.push_back({level == 0 ? "mesh of 20" : level == 2 ? "mesh of 320" : "mesh of 5120", make_mesh(mesh, "ico"),
-                   level == 0 ? between(mesh.vertices[0], down) : Quat::Identity()});
+    all.push_back({level == 0   ? "mesh of 20"
+                   : level == 2 ? "mesh of 320"
+                                : "mesh of 5120",
+                   make_mesh(mesh, "ico"), level == 0 ? between(mesh.vertices[0], down) : Quat::Identity()});
   }
   for (const int legs : {2, 4}) {
     const Shape table = make_mesh(table_mesh(legs, kSize), "table");
@@ -60,8 +62,12 @@ Body thrown(const Kind& kind, const Materials& materials, double z, double speed
   return b;
 }
 
-double lowest(const Body& b) { return b.position.z() + (b.orientation * b.shape.support(b.orientation.conjugate() * Vec3(0, 0, -1))).z(); }
-double highest(const Body& b) { return b.position.z() + (b.orientation * b.shape.support(b.orientation.conjugate() * Vec3(0, 0, 1))).z(); }
+double lowest(const Body& b) {
+  return b.position.z() + (b.orientation * b.shape.support(b.orientation.conjugate() * Vec3(0, 0, -1))).z();
+}
+double highest(const Body& b) {
+  return b.position.z() + (b.orientation * b.shape.support(b.orientation.conjugate() * Vec3(0, 0, 1))).z();
+}
 
 /// Until they part.
 void collide(Particles& p) {
@@ -91,8 +97,10 @@ TEST(Restitution, OfEveryShapeOnEverySurface) {
     spec.point.setZero();
     spec.size = Vec3(60e-3, 60e-3, 2e-3);
     walls.emplace_back("plate", make_wall(spec, materials, ""));
-    for (const int n : {1, 2, 7, 40}) walls.emplace_back("divided " + std::to_string(n), wall_of(flat_mesh(n, 31e-3)));
-    walls.emplace_back("block", wall_of(moved(block_mesh(Vec3(30e-3, 30e-3, 10e-3), 3), Mat3::Identity(), Vec3(0, 0, -10e-3))));
+    for (const int n : {1, 2, 7, 40})
+      walls.emplace_back("divided " + std::to_string(n), wall_of(flat_mesh(n, 31e-3)));
+    walls.emplace_back("block", wall_of(moved(block_mesh(Vec3(30e-3, 30e-3, 10e-3), 3), Mat3::Identity(),
+                                              Vec3(0, 0, -10e-3))));
     for (const Kind& kind : kinds())
       for (const auto& [name, wall] : walls) {
         if (finest(kind) && (e != 0.5 || (name != "plane" && name != "divided 7"))) continue;
@@ -107,10 +115,12 @@ TEST(Restitution, OfEveryShapeOnEverySurface) {
   }
 }
 
-/// A corner of three or five edges on an edge, or between four legs, is pushed to the side: no central impact.
+/// A corner of three or five edges on an edge, or between four legs, is pushed to the side: no central
+/// impact.
 bool lopsided(const Kind& a, const Kind& b) {
   const std::string_view odd = a.name, even = b.name;
-  return (odd == "box on corner" || odd == "mesh of 20") && (even == "box on edge" || even.starts_with("table"));
+  return (odd == "box on corner" || odd == "mesh of 20") &&
+         (even == "box on edge" || even.starts_with("table"));
 }
 
 /// All three and the finest mesh: EJECTA_ALL_PAIRS=1.
@@ -125,7 +135,8 @@ TEST(Restitution, OfEveryShapeOnEachOther) {
       for (std::size_t j = i; j < all.size(); ++j) {
         if (lopsided(all[i], all[j]) || lopsided(all[j], all[i])) continue;
         Particles p(Vec3(0, 0, 0), materials, c.contact);
-        Body low = thrown(all[i], materials, 0.0, 0.5 * kSpeed, true), high = thrown(all[j], materials, 0.0, -0.5 * kSpeed, false);
+        Body low = thrown(all[i], materials, 0.0, 0.5 * kSpeed, true),
+             high = thrown(all[j], materials, 0.0, -0.5 * kSpeed, false);
         low.position.z() = -1e-5 - highest(low);
         high.position.z() = 1e-5 - lowest(high);
         p.add(low);

@@ -5,6 +5,7 @@
 
 #include "dem/particles.hpp"
 #include "scene.hpp"
+#include "shape/convex_parts.hpp"
 
 /// Bodies and surfaces of triangles for tests of contacts, without files.
 namespace ejecta {
@@ -24,6 +25,8 @@ inline Wall wall_of(const TriangleMesh& mesh, bool two_sided = false) {
   w.name = "mesh";
   w.is_plane = false;
   w.surface = std::make_shared<Surface>(mesh, two_sided);
+  if (w.surface->closed()) w.solids = convex_pieces(mesh);
+  find_seams(w.solids);
   return w;
 }
 
@@ -31,7 +34,8 @@ inline Wall wall_of(const TriangleMesh& mesh, bool two_sided = false) {
 inline TriangleMesh flat_mesh(int n, double s) {
   TriangleMesh mesh;
   for (int j = 0; j <= n; ++j)
-    for (int i = 0; i <= n; ++i) mesh.vertices.emplace_back(s * (2.0 * i / n - 1), s * (2.0 * j / n - 1), 0.0);
+    for (int i = 0; i <= n; ++i)
+      mesh.vertices.emplace_back(s * (2.0 * i / n - 1), s * (2.0 * j / n - 1), 0.0);
   for (int j = 0; j < n; ++j)
     for (int i = 0; i < n; ++i) {
       const int a = j * (n + 1) + i;
