@@ -19,10 +19,8 @@ bool in_plane(const Vec3& normal, double offset, const Vec3& inward, double at, 
 /// A wall of the case has a surface in the plane inward . x = at.
 bool stands_there(const Wall& wall, const Vec3& inward, double at, double size) {
   if (wall.is_plane) return in_plane(wall.normal, wall.offset, inward, at, size);
-  return std::any_of(wall.solids.begin(), wall.solids.end(), [&](const Polytope& solid) {
-    return std::any_of(solid.faces.begin(), solid.faces.end(), [&](const Polytope::Face& f) {
-      return in_plane(f.normal, f.offset, inward, at, size);
-    });
+  return std::ranges::any_of(wall.surface->regions(), [&](const Surface::Region& r) {
+    return in_plane(r.plane.normal, r.plane.offset, inward, at, size);
   });
 }
 

@@ -223,6 +223,7 @@ class Run {
         make_result(model_, clock_.time(), clock_.step(), wall_, operator_times());
     outputs_->report(result);
     directory_.write_result(result);
+    for (const std::string& dent : model_.particles().deep_dents()) fmt::print(stderr, "warning: {}\n", dent);
     if (case_.output.report) output::write_report(path_);
     if (options_.quiet) return;
     if (options_.verbose || model_.flow())

@@ -171,6 +171,7 @@ Json make_result(const CoupledModel& m, double time, std::int64_t steps, double 
   for (std::size_t b = 0; b < m.particles().bodies().size(); ++b) bodies.push_back(body_json(m, b));
   if (m.splitter() && !bodies.empty()) r["outcome"] = bodies[0]["outcome"];
   if (!bodies.empty()) r["bodies"] = bodies;
+  if (const auto dents = m.particles().deep_dents(); !dents.empty()) r["warnings"] = dents;
   r["cells"] = m.flow() ? m.grid().cells() : 0;
   r["steps"] = steps;
   r["flow_steps"] = m.flow_steps();

@@ -246,7 +246,8 @@ struct WallSpec {
   Vec3 size{0, 0, 0};      ///< plate: extents along its two tangents and thickness; box: edges
   Vec3 velocity{0, 0, 0};  ///< surface velocity (belt)
   std::string material;
-  std::string file;  ///< mesh
+  std::string file;        ///< mesh
+  bool two_sided = false;  ///< mesh that is open: bodies meet its back too
 };
 
 /// [splitter]: the dividing plate. A body is ejected when its centre passes above the edge.

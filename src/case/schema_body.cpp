@@ -198,7 +198,9 @@ std::vector<Key> keys(WallSpec& s) {
            .slot = &s.file,
            .help = "Mesh: STL surface, beside the case file",
            .unset = "needed for a mesh",
-           .example = "\"chute.stl\""}};
+           .example = "\"chute.stl\""},
+          {"two_sided", &s.two_sided, none, anything,
+           "An open mesh touches on both sides, not only on that to which its normals look", ""}};
 }
 
 }  // namespace ejecta

@@ -167,6 +167,7 @@ void BallContacts::compute_groups(const Parts& parts, const Materials& materials
       c.mass = radii * both;
       arms = (a.radius - 0.5 * c.overlap) * a.spin + (b.radius - 0.5 * c.overlap) * b.spin;
     }
+    c.share = lanes_at(shares_, n);
     // Velocity at the contact point: arms are -arm_a n from a and +arm_b n from b.
     c.velocity = a.velocity - b.velocity - cross(arms, c.normal);
     return c;
@@ -224,12 +225,59 @@ void BallContacts::compute_all(const Parts& parts, const Materials& materials, c
 
 void BallContacts::compute(const Parts& parts, const Materials& materials, const Domain& domain, double dt) {
   rolling_ = materials.any_rolling();
+  share_energy(parts, materials, domain);
   if (materials.law() == ContactLaw::linear)
     rolling_ ? compute_all<LinearSpring, true>(parts, materials, domain, dt)
              : compute_all<LinearSpring, false>(parts, materials, domain, dt);
   else
     rolling_ ? compute_all<HertzMindlin, true>(parts, materials, domain, dt)
              : compute_all<HertzMindlin, false>(parts, materials, domain, dt);
+}
+
+/// What a group stores against the motion along the normal of each of its contacts, and how much of it is not
+/// in this one.
+void BallContacts::share_energy(const Parts& parts, const Materials& materials, const Domain& domain) {
+  struct Spring {
+    Vec3 normal;
+    double energy;
+  };
+  const auto spring_of = [&](int n) -> Spring {
+    const BallRow& a = parts.row(a_[at(n)]);
+    Contact<double> c;
+    Vec3 normal;
+    int other;
+    if (n >= planes_from_) {
+      const BallRow& plane = planes_[at(b_[at(n)])];
+      normal = plane.centre();
+      c.overlap = a.radius + plane.radius - normal.dot(a.centre());
+      c.radius = a.radius;
+      other = static_cast<int>(plane.material);
+    } else {
+      const BallRow& b = parts.row(b_[at(n)]);
+      const Vec3 apart = domain.nearest(a.centre() - b.centre());
+      normal = apart.normalized();
+      c.overlap = a.radius + b.radius - apart.norm();
+      c.radius = a.radius * b.radius / (a.radius + b.radius);
+      other = static_cast<int>(b.material);
+    }
+    if (!(c.overlap > 0)) return {normal, 0.0};
+    const PairConstants<double>& p = materials.pair(static_cast<int>(a.material), other);
+    return {normal, materials.law() == ContactLaw::linear ? LinearSpring::spring(c, p).energy
+                                                          : HertzMindlin::spring(c, p).energy};
+  };
+  for_each_block(static_cast<int>(groups_.size()) - 1, kBlock, [&](int, int begin, int end) {
+    thread_local std::vector<Spring> springs;
+    for (int g = begin; g < end; ++g) {
+      springs.clear();
+      for (int i = groups_[at(g)]; i < groups_[at(g + 1)]; ++i) springs.push_back(spring_of(grouped_[at(i)]));
+      for (std::size_t i = 0; i < springs.size(); ++i) {
+        double all = 0.0;
+        for (const Spring& s : springs) all += s.energy * std::max(0.0, s.normal.dot(springs[i].normal));
+        shares_[at(grouped_[static_cast<std::size_t>(groups_[at(g)]) + i])] =
+            springs[i].energy > 0 ? springs[i].energy / all : 1.0;
+      }
+    }
+  });
 }
 
 double BallContacts::wall_power() const {

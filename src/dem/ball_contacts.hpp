@@ -1,5 +1,6 @@
 #pragma once
 #include <algorithm>
+#include <array>
 #include <span>
 #include <utility>
 #include <vector>
@@ -28,18 +29,27 @@ class BallContacts {
   /// Candidate pairs, sorted: balls (a < b), and balls with walls that are planes. Histories of pairs that
   /// were there before are kept.
   using Pairs = std::span<const std::pair<int, int>>;
-  void set_pairs(Pairs balls, Pairs planes, std::span<const Wall> walls, int ball_count);
+  void set_pairs(Pairs balls, Pairs planes, const Parts& parts);
+  void add(const WallPlane& plane, const Wall& wall);
   /// Evaluates the law on every pair and moves the histories over dt.
   void compute(const Parts& parts, const Materials& materials, const Domain& domain, double dt);
   /// Adds the force and the torque about the ball's centre that act on it. Returns its largest half overlap,
   /// m.
   double gather(int ball, double radius, Vec4& force, Vec4& torque) const;
 
+  /// The pair of a ball with a plane, if it touched at the last step; else -1.
+  int touching(int ball, int plane) const;
+  /// The pair of a ball with one of the planes [from, to), or -1.
+  int find_plane(int ball, int from, int to) const;
+  /// Slip (m) and roll (rad) of a pair: x, y, z each.
+  std::array<double, 6> friction(int n) const;
+  void set_friction(int n, const std::array<double, 6>& h);
+
   double elastic() const;     ///< J
   double wall_power() const;  ///< W, done by the moving planes on the balls
 
   int pair_count() const { return static_cast<int>(a_.size()); }  ///< with those that pad the lanes
-  /// Ball a; ball b, or -1 - n for wall n.
+  /// Ball a; ball b, or -1 - n for plane n.
   std::pair<int, int> pair(int n) const { return {a_[at(n)], n < planes_from_ ? b_[at(n)] : -1 - b_[at(n)]}; }
   const PairRow& row(int n) const { return rows_[at(n)]; }
 
@@ -53,6 +63,9 @@ class BallContacts {
   static std::size_t at(int n) { return static_cast<std::size_t>(n); }
   void arrange(Pairs balls, Pairs planes, int ball_count);
   void index_pairs(int balls);
+  void group_pairs(const Parts& parts);
+  void share_energy(const Parts& parts, const Materials& materials, const Domain& domain);
+  static BallRow untouched();
   template <class Law, bool Rolling>
   void compute_all(const Parts& parts, const Materials& materials, const Domain& domain, double dt);
   template <class Law, bool Rolling, bool Planes>
@@ -62,14 +75,18 @@ class BallContacts {
   // the wall as b, padded likewise.
   std::vector<int> a_, b_;
   int planes_from_ = 0;
-  std::vector<BallRow> planes_{BallRow{}};  // normal, offset, velocity, material; the last touches nothing
-  std::vector<double> history_[6];          // slip x, y, z and roll x, y, z of each pair
-  std::vector<int> last_a_, last_b_;        // before the pairs were set anew
-  std::vector<double> last_history_[6];
+  std::vector<BallRow> planes_{1,
+                               untouched()};  // normal, offset, velocity, material; the last touches nothing
+  static constexpr std::size_t kRemembered = 6;
+  std::vector<double> history_[kRemembered];  // slip x, y, z and roll x, y, z of each pair
+  std::vector<double> shares_;                // of the energy that all contacts of the two bodies store
+  std::vector<int> last_a_, last_b_;          // before the pairs were set anew
+  std::vector<double> last_history_[kRemembered];
   std::vector<PairRow> rows_;
   std::vector<double> moments_[3];  // N m, rolling resistance on a
   std::vector<int> cursor_;
-  std::vector<int> first_, entries_;  // of each ball: 2 n for pair n as a, 2 n + 1 as b, in order
+  std::vector<int> first_, entries_;   // of each ball: 2 n for pair n as a, 2 n + 1 as b, in order
+  std::vector<int> grouped_, groups_;  // pairs by the two bodies (all walls are one); where each group begins
   bool rolling_ = false;
 };
 

@@ -23,10 +23,10 @@ void refill(std::vector<T>& v, std::size_t count, const T& value) {
 }
 
 /// A plane as the lanes read it: the normal for the centre, the offset for the radius.
-BallRow plane_row(const Wall& wall) {
+BallRow plane_row(const WallPlane& plane, const Wall& wall) {
   BallRow row;
-  row.x = wall.normal.x(), row.y = wall.normal.y(), row.z = wall.normal.z();
-  row.radius = wall.offset;
+  row.x = plane.normal.x(), row.y = plane.normal.y(), row.z = plane.normal.z();
+  row.radius = plane.offset;
   row.vx = wall.velocity.x(), row.vy = wall.velocity.y(), row.vz = wall.velocity.z();
   row.material = wall.material;
   return row;
@@ -51,17 +51,76 @@ void BallContacts::index_pairs(int balls) {
   for (auto& m : moments_) refill(m, a_.size(), 0.0);
 }
 
-void BallContacts::set_pairs(Pairs balls, Pairs planes, std::span<const Wall> walls, int ball_count) {
-  planes_.clear();
-  for (const Wall& wall : walls) planes_.push_back(plane_row(wall));
-  planes_.emplace_back().radius = -1e300;
-  arrange(balls, planes, ball_count);
+BallRow BallContacts::untouched() {
+  BallRow row;
+  row.radius = -1e300;
+  return row;
+}
+
+void BallContacts::add(const WallPlane& plane, const Wall& wall) {
+  planes_.back() = plane_row(plane, wall);
+  planes_.push_back(untouched());
+}
+
+void BallContacts::set_pairs(Pairs balls, Pairs planes, const Parts& parts) {
+  arrange(balls, planes, parts.ball_count());
+  group_pairs(parts);
+}
+
+/// Only bodies of several balls have groups of more than one.
+void BallContacts::group_pairs(const Parts& parts) {
+  grouped_.clear();
+  groups_.assign(1, 0);
+  if (!parts.any_of_several_balls()) return;
+  const auto bodies = [&](int n) {
+    const int a = parts.body_of_ball(a_[at(n)]);
+    if (n >= planes_from_) return std::pair(a, -1);
+    return std::pair(a, parts.body_of_ball(b_[at(n)]));
+  };
+  const auto alone = [&](int n) {
+    const auto [a, b] = bodies(n);
+    return parts.ball_count(a) == 1 && (b < 0 || parts.ball_count(b) == 1);
+  };
+  for (int n = 0; n < pair_count(); ++n)
+    if (a_[at(n)] < parts.ball_count() && !alone(n)) grouped_.push_back(n);
+  std::sort(grouped_.begin(), grouped_.end(),
+            [&](int n, int m) { return std::pair(bodies(n), n) < std::pair(bodies(m), m); });
+  for (std::size_t n = 1; n <= grouped_.size(); ++n)
+    if (n == grouped_.size() || bodies(grouped_[n]) != bodies(grouped_[n - 1]))
+      groups_.push_back(static_cast<int>(n));
+}
+
+int BallContacts::touching(int ball, int plane) const {
+  if (at(ball) + 1 >= first_.size()) return -1;
+  for (int k = first_[at(ball)]; k < first_[at(ball) + 1]; ++k) {
+    const int n = entries_[at(k)] >> 1;
+    if (n >= planes_from_ && b_[at(n)] == plane && rows_[at(n)].half_overlap > 0) return n;
+  }
+  return -1;
+}
+
+int BallContacts::find_plane(int ball, int from, int to) const {
+  for (int k = first_[at(ball)]; k < first_[at(ball) + 1]; ++k) {
+    const int n = entries_[at(k)] >> 1;
+    if (n >= planes_from_ && b_[at(n)] >= from && b_[at(n)] < to) return n;
+  }
+  return -1;
+}
+
+std::array<double, 6> BallContacts::friction(int n) const {
+  std::array<double, 6> h;
+  for (std::size_t k = 0; k < 6; ++k) h[k] = history_[k][at(n)];
+  return h;
+}
+
+void BallContacts::set_friction(int n, const std::array<double, 6>& h) {
+  for (std::size_t k = 0; k < 6; ++k) history_[k][at(n)] = h[k];
 }
 
 void BallContacts::arrange(Pairs balls, Pairs planes, int ball_count) {
   last_a_.swap(a_);
   last_b_.swap(b_);
-  for (int k = 0; k < 6; ++k) last_history_[k].swap(history_[k]);
+  for (std::size_t k = 0; k < kRemembered; ++k) last_history_[k].swap(history_[k]);
   const std::size_t last_planes_from = at(planes_from_);
   planes_from_ = static_cast<int>(padded(balls.size()));
   const std::size_t total = at(planes_from_) + padded(planes.size());
@@ -69,16 +128,19 @@ void BallContacts::arrange(Pairs balls, Pairs planes, int ball_count) {
   refill(b_, total, static_cast<int>(planes_.size()) - 1);
   std::fill_n(b_.begin(), planes_from_, ball_count);
   for (auto& h : history_) refill(h, total, 0.0);
+  refill(shares_, total, 1.0);
   const auto put = [&](Pairs pairs, std::size_t from, std::size_t old, std::size_t old_end) {
     for (std::size_t n = 0; n < pairs.size(); ++n) {
       std::tie(a_[from + n], b_[from + n]) = pairs[n];
       while (old < old_end && std::pair(last_a_[old], last_b_[old]) < pairs[n]) ++old;
       if (old < old_end && std::pair(last_a_[old], last_b_[old]) == pairs[n])
-        for (int k = 0; k < 6; ++k) history_[k][from + n] = last_history_[k][old];
+        for (std::size_t k = 0; k < kRemembered; ++k) history_[k][from + n] = last_history_[k][old];
     }
   };
   put(balls, 0, 0, last_planes_from);
   put(planes, at(planes_from_), last_planes_from, last_a_.size());
+  grouped_.clear();
+  groups_.assign(1, 0);
   index_pairs(ball_count);
 }
 
@@ -102,7 +164,7 @@ void BallContacts::save(std::vector<double>& out) const {
     const std::size_t head = out.size();
     out.push_back(0);
     for (std::size_t n = plane ? at(planes_from_) : 0; n < (plane ? a_.size() : at(planes_from_)); ++n) {
-      if (std::all_of(history_, history_ + 6, [&](const auto& h) { return h[n] == 0.0; })) continue;
+      if (std::all_of(history_, history_ + kRemembered, [&](const auto& h) { return h[n] == 0.0; })) continue;
       out[head] += 1;
       out.push_back(a_[n]);
       out.push_back(b_[n]);
@@ -112,21 +174,20 @@ void BallContacts::save(std::vector<double>& out) const {
 }
 
 void BallContacts::load(StateReader& in, int balls) {
-  constexpr std::size_t remembered = std::size(decltype(history_){});
   std::vector<std::pair<int, int>> pairs[2];
   std::vector<std::span<const double>> histories[2];
   for (int k = 0; k < 2; ++k) {
-    pairs[k].resize(in.count(2 + remembered));
+    pairs[k].resize(in.count(2 + kRemembered));
     for (auto& [a, b] : pairs[k]) {
       a = in.whole(0, balls - 1);
       b = in.whole(0, k == 0 ? balls - 1 : std::numeric_limits<int>::max());
-      histories[k].push_back(in.numbers(remembered));
+      histories[k].push_back(in.numbers(kRemembered));
     }
   }
   arrange(pairs[0], pairs[1], balls);
   for (int k = 0; k < 2; ++k)
     for (std::size_t n = 0; n < pairs[k].size(); ++n)
-      for (std::size_t h = 0; h < 6; ++h)
+      for (std::size_t h = 0; h < kRemembered; ++h)
         history_[h][n + (k == 0 ? 0 : at(planes_from_))] = histories[k][n][h];
 }
 

@@ -6,6 +6,8 @@
 namespace ejecta {
 namespace {
 
+constexpr double kShallow = 0.9;  // of a ball's radius: nearer to a plane, it has dented it deeply
+
 bool near_solid(const NeighbourSearch::Item& item, const Polytope& solid, double skin) {
   const double reach = item.radius + skin;
   if ((item.centre - solid.centre).norm() > reach + solid.radius) return false;
@@ -20,23 +22,24 @@ PartKey key_of(int part, int balls) {
 
 }  // namespace
 
+void CandidateSearch::list_body(int body, const Parts& parts, const Body& at) {
+  const bool can_be_pushed = inverse_mass(at) > 0;
+  for (int n = parts.first_ball(body); n < parts.first_ball(body + 1); ++n) {
+    items_.push_back({parts.row(n).centre(), parts.row(n).radius, body});
+    part_of_.push_back({n, can_be_pushed, parts.ball_count(body) == 1});
+  }
+  for (int n = parts.first_polytope(body); n < parts.first_polytope(body + 1); ++n) {
+    const Polytope& solid = *parts.polytope(n).solid;
+    items_.push_back({at.to_world(solid.centre), solid.radius, body});
+    part_of_.push_back({parts.ball_count() + n, can_be_pushed});
+  }
+}
+
 void CandidateSearch::list_parts(const Parts& parts, std::span<const Body> bodies) {
   items_.clear();
   part_of_.clear();
-  const int balls = parts.ball_count();
-  for (int n = 0; n < balls; ++n) {
-    const BallRow& row = parts.row(n);
-    if (!parts.here(parts.body_of_ball(n))) continue;
-    items_.push_back({row.centre(), row.radius, parts.body_of_ball(n)});
-    part_of_.push_back({n, row.inverse_mass > 0});
-  }
-  for (int n = 0; n < parts.polytope_count(); ++n) {
-    const PolytopePart& p = parts.polytope(n);
-    if (!parts.here(p.body)) continue;
-    const Body& body = bodies[static_cast<std::size_t>(p.body)];
-    items_.push_back({body.to_world(p.solid->centre), p.solid->radius, p.body});
-    part_of_.push_back({balls + n, inverse_mass(body) > 0});
-  }
+  for (int n = 0; n < static_cast<int>(bodies.size()); ++n)
+    if (parts.here(n)) list_body(n, parts, bodies[static_cast<std::size_t>(n)]);
 }
 
 void CandidateSearch::add_images(const Domain& domain, double skin) {
@@ -54,6 +57,7 @@ void CandidateSearch::add_images(const Domain& domain, double skin) {
         NeighbourSearch::Item item = items_[n];
         part.image = true;
         part.shift[c] += side * domain.period[c];
+        part.which += (side > 0 ? 1 : 2) * (c == 0 ? 1 : c == 1 ? 3 : 9);
         item.centre[c] += side * domain.period[c];
         items_.push_back(item);
         part_of_.push_back(part);
@@ -61,32 +65,112 @@ void CandidateSearch::add_images(const Domain& domain, double skin) {
   }
 }
 
-void CandidateSearch::list_walls(std::span<const Wall> walls, int balls, double skin) {
-  for (std::size_t n = 0; n < items_.size() && !part_of_[n].image; ++n) {
+void CandidateSearch::put(std::size_t item, const PartKey& wall, int balls) {
+  SolidPair& pair = solids_.emplace_back();
+  pair.a = key_of(part_of_[item].index, balls);
+  pair.b = wall;
+  pair.b.image = part_of_[item].which;
+  pair.body_a = items_[item].body;
+  pair.shift = -part_of_[item].shift;
+}
+
+/// Balls meet triangles, polytopes the regions they lie in; but where nothing else of the surface is near a
+/// ball than the inside of a flat piece, it is a plane.
+void CandidateSearch::list_surface(const Wall& wall, int index, const Domain& domain, std::size_t n,
+                                   int balls, double skin, const BallContacts* before) {
+  const NeighbourSearch::Item& item = items_[n];
+  const Surface& surface = *wall.surface;
+  const double reach = item.radius + skin;
+  near_.clear();
+  surface.near(item.centre, reach, [&](int t) {
+    const auto& c = surface.triangles()[static_cast<std::size_t>(t)].corners;
+    const double height = surface.triangles()[static_cast<std::size_t>(t)].normal.dot(item.centre - c[0]);
+    if (std::abs(height) < reach &&
+        (nearest_on_triangle(item.centre, c[0], c[1], c[2]).point - item.centre).squaredNorm() <
+            reach * reach)
+      near_.push_back(t);
+  });
+  if (near_.empty()) return;
+  const auto region_of = [&](int t) { return surface.triangles()[static_cast<std::size_t>(t)].region; };
+  if (part_of_[n].index < balls) {
+    const int first = region_of(near_.front());
+    if (std::all_of(near_.begin(), near_.end(), [&](int t) { return region_of(t) == first; }) &&
+        list_plane(wall, first, domain, n, reach, before))
+      return;
+    for (const int t : near_) put(n, {PartKind::wall_triangle, index, t}, balls);
+    return;
+  }
+  for (int& t : near_) t = region_of(t);
+  std::sort(near_.begin(), near_.end());
+  near_.erase(std::unique(near_.begin(), near_.end()), near_.end());
+  for (const int r : near_) put(n, {PartKind::wall_region, index, r}, balls);
+}
+
+/// Whether the one region of a surface near a ball is a plane to it. One that it has dented deeply, from
+/// which side so ever, is left to the triangles, which remember the side.
+bool CandidateSearch::list_plane(const Wall& wall, int r, const Domain& domain, std::size_t n, double reach,
+                                 const BallContacts* before) {
+  const NeighbourSearch::Item& item = items_[n];
+  const Surface::Region& region = wall.surface->regions()[static_cast<std::size_t>(r)];
+  // A plane of the image of a wall would be another plane. And a body of several balls has one dashpot: all
+  // of its contacts with the surface are kept together.
+  if (!part_of_[n].only_ball || std::abs(region.plane.normal.dot(part_of_[n].shift)) > 0) return false;
+  const double height = region.plane.normal.dot(item.centre) - region.plane.offset;
+  const Vec3 foot = item.centre - height * region.plane.normal;
+  const int ball = part_of_[n].index, front = wall.first_plane + 2 * r, back = front + 1;
+  int plane = height < 0 ? back : front;
+  if (before && std::abs(height) < kShallow * item.radius) {
+    plane = before->touching(ball, front) >= 0 ? front : back;
+    if (before->touching(ball, plane) < 0) return false;
+  }
+  if (!region.holds(foot, std::sqrt(std::max(0.0, reach * reach - height * height)))) return false;
+  if (plane == back && !wall.surface->two_sided()) return std::abs(height) >= item.radius;
+  // Of a ball and its images across periodic sides only one stands on the wall within the domain.
+  for (int c = 0; c < 3; ++c) {
+    const double slack = 1e-9 * domain.period[c];
+    if (domain.period[c] > 0 && (foot[c] < domain.low[c] - slack || foot[c] >= domain.high[c] - slack))
+      return true;
+  }
+  planes_.emplace_back(ball, plane);
+  return true;
+}
+
+void CandidateSearch::list_walls(std::span<const Wall> walls, const Domain& domain, int balls, double skin,
+                                 const BallContacts* before) {
+  for (std::size_t n = 0; n < items_.size(); ++n) {
     if (!part_of_[n].can_be_pushed) continue;
     const NeighbourSearch::Item& item = items_[n];
-    const int part = part_of_[n].index;
-    const auto list = [&](const PartKey& wall) {
-      SolidPair& pair = solids_.emplace_back();
-      pair.a = key_of(part, balls);
-      pair.b = wall;
-      pair.body_a = item.body;
-    };
+    const bool ball = part_of_[n].index < balls;
     for (int w = 0; w < static_cast<int>(walls.size()); ++w) {
       const Wall& wall = walls[static_cast<std::size_t>(w)];
-      if (wall.is_plane && wall.normal.dot(item.centre) - wall.offset < item.radius + skin) {
-        if (part < balls) planes_.emplace_back(part, w);
-        else list({PartKind::wall_plane, w, 0});
+      if (wall.is_plane) {
+        if (part_of_[n].image || !(wall.normal.dot(item.centre) - wall.offset < item.radius + skin)) continue;
+        if (ball) planes_.emplace_back(part_of_[n].index, wall.first_plane);
+        else put(n, {PartKind::wall_plane, w, 0}, balls);
+      } else if (ball || wall.solids.empty()) {
+        list_surface(wall, w, domain, n, balls, skin, before);
+      } else {
+        for (int s = 0; s < static_cast<int>(wall.solids.size()); ++s)
+          if (near_solid(item, wall.solids[static_cast<std::size_t>(s)], skin))
+            put(n, {PartKind::wall_solid, w, s}, balls);
       }
-      for (int s = 0; s < static_cast<int>(wall.solids.size()); ++s)
-        if (near_solid(item, wall.solids[static_cast<std::size_t>(s)], skin))
-          list({PartKind::wall_solid, w, s});
     }
   }
 }
 
+void CandidateSearch::find_walls(int body, const Parts& parts, std::span<const Body> bodies,
+                                 std::span<const Wall> walls, const Domain& domain) {
+  items_.clear();
+  part_of_.clear();
+  planes_.clear();
+  solids_.clear();
+  list_body(body, parts, bodies[static_cast<std::size_t>(body)]);
+  if (domain.periodic()) add_images(domain, 0.0);
+  list_walls(walls, domain, parts.ball_count(), 0.0, nullptr);
+}
+
 void CandidateSearch::find(const Parts& parts, std::span<const Body> bodies, std::span<const Wall> walls,
-                           const Domain& domain, double skin) {
+                           const Domain& domain, double skin, const BallContacts* before) {
   list_parts(parts, bodies);
   if (domain.periodic()) add_images(domain, skin);
   const int balls = parts.ball_count();
@@ -109,12 +193,13 @@ void CandidateSearch::find(const Parts& parts, std::span<const Body> bodies, std
       pair.shift = b.shift - a.shift;
     }
   }
-  list_walls(walls, balls, skin);
-  const auto before = [](const SolidPair& p, const SolidPair& q) {
+  list_walls(walls, domain, balls, skin, before);
+  std::sort(planes_.begin(), planes_.end());
+  const auto earlier = [](const SolidPair& p, const SolidPair& q) {
     return std::tie(p.a, p.b) < std::tie(q.a, q.b);
   };
   const auto same = [](const SolidPair& p, const SolidPair& q) { return p.a == q.a && p.b == q.b; };
-  std::sort(solids_.begin(), solids_.end(), before);
+  std::sort(solids_.begin(), solids_.end(), earlier);
   if (!domain.periodic()) return;
   // A pair across a side was found from both.
   std::sort(balls_.begin(), balls_.end());

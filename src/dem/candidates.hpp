@@ -3,6 +3,7 @@
 #include <utility>
 #include <vector>
 
+#include "dem/ball_contacts.hpp"
 #include "dem/domain.hpp"
 #include "dem/neighbours.hpp"
 #include "dem/parts.hpp"
@@ -14,28 +15,42 @@ namespace ejecta {
 /// of it. Pairs of which neither side can be pushed are left out. Keeps its buffers.
 class CandidateSearch {
  public:
+  /// `balls`: the contacts that were there before; none: all are new.
   void find(const Parts& parts, std::span<const Body> bodies, std::span<const Wall> walls,
-            const Domain& domain, double skin);
+            const Domain& domain, double skin, const BallContacts* balls = nullptr);
+  /// Only those of one body with walls, whether it is there or not.
+  void find_walls(int body, const Parts& parts, std::span<const Body> bodies, std::span<const Wall> walls,
+                  const Domain& domain);
   std::span<const std::pair<int, int>> balls() const { return balls_; }    ///< indices of balls
-  std::span<const std::pair<int, int>> planes() const { return planes_; }  ///< ball, wall that is a plane
+  std::span<const std::pair<int, int>> planes() const { return planes_; }  ///< ball, wall plane
   std::vector<SolidPair>& solids() { return solids_; }
+  std::span<const SolidPair> solids() const { return solids_; }
 
  private:
   /// A part, or its image across a periodic side.
   struct Part {
     int index = 0;  // of a ball, or of a polytope after all balls
-    bool can_be_pushed = true, image = false;
+    bool can_be_pushed = true, only_ball = false, image = false;
     Vec3 shift{0, 0, 0};  // m, from the part to its image
+    int which = 0;        // of the images: a digit 0, 1, 2 for each direction
   };
   void list_parts(const Parts& parts, std::span<const Body> bodies);
   void add_images(const Domain& domain, double skin);
-  void list_walls(std::span<const Wall> walls, int balls, double skin);
+  void list_body(int body, const Parts& parts, const Body& at);
+  void list_walls(std::span<const Wall> walls, const Domain& domain, int balls, double skin,
+                  const BallContacts* before);
+  void list_surface(const Wall& wall, int index, const Domain& domain, std::size_t item, int balls,
+                    double skin, const BallContacts* before);
+  bool list_plane(const Wall& wall, int region, const Domain& domain, std::size_t item, double reach,
+                  const BallContacts* before);
+  void put(std::size_t item, const PartKey& wall, int balls);
 
   NeighbourSearch search_;
   std::vector<NeighbourSearch::Item> items_;
   std::vector<Part> part_of_;  // each item
   std::vector<std::pair<int, int>> balls_, planes_;
   std::vector<SolidPair> solids_;
+  std::vector<int> near_;
 };
 
 }  // namespace ejecta

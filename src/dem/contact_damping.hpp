@@ -2,13 +2,12 @@
 
 namespace ejecta {
 
-/// The damping alpha for which a contact of force secant * d - alpha sqrt(m secant) v gives back the
-/// coefficient of restitution e in (0, 1]. Hertz (secant = k sqrt(d)):
-///   tension allowed: alpha = -sqrt(5) ln e / sqrt(ln^2 e + pi^2)  (Antypov & Elliott 2011, EPL 94:50004);
-///   clamped at F >= 0, the equation of motion x'' = -x^1.5 - alpha x^0.25 x' is integrated to the instant of
-///   F = 0 and alpha found by bisection, because the formula would give 0.397 for e = 0.3.
-double damping_hertz(double restitution, bool allow_tension);
-/// The same for a linear spring (secant = k): alpha = -2 ln e / sqrt(ln^2 e + pi^2) with tension.
-double damping_linear(double restitution, bool allow_tension);
+/// The damping gamma for which a contact of force F - gamma F sqrt(m/(2 E)) v, E the energy of F, gives back
+/// the coefficient of restitution e in (0, 1]. In the coordinate u = sqrt(2 E) every such contact is the
+/// linear oscillator u'' = -u - gamma u':
+///   tension allowed: gamma = -2 ln e / sqrt(ln^2 e + pi^2), to u = 0;
+///   clamped at F >= 0, to the instant of zero force: e = exp(-z t/w), t = atan2(2 z w, 2 z^2 - 1), z =
+///   gamma/2, w^2 = 1 - z^2 (Schwager & Poeschel 2007, Granular Matter 9:465), by bisection.
+double contact_damping(double restitution, bool allow_tension);
 
 }  // namespace ejecta

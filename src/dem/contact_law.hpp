@@ -10,7 +10,7 @@ struct PairConstants {
   T youngs{};     ///< Pa, E* = 1/((1-nu_a^2)/E_a + (1-nu_b^2)/E_b)
   T shear{};      ///< Pa, G* = 1/((2-nu_a)/G_a + (2-nu_b)/G_b)
   T stiffness{};  ///< N/m, linear law
-  T damping{};    ///< dimensionless, alpha of contact_damping.hpp
+  T damping{};    ///< dimensionless, gamma of contact_damping.hpp
   T drag{};       ///< sqrt(tangential / normal stiffness): tangential dashpot over normal one
   T friction{};   ///< Coulomb
   T rolling{};    ///< rolling friction: moment / (radius * normal force)
@@ -24,6 +24,7 @@ struct Contact {
   T radius{};          ///< m, 1/(1/r_a + 1/r_b)
   T mass{};            ///< kg, 1/(1/m_a + 1/m_b)
   Triple<T> velocity;  ///< m/s, of a relative to b at the contact point
+  T share{T{} + 1.0};  ///< of the energy that all contacts of the two bodies store against this motion
 };
 
 template <class T>
@@ -41,6 +42,7 @@ struct ContactForce {
 template <class T>
 struct NormalSpring {
   T secant{}, tangential{}, energy{};  ///< N/m, N/m, J
+  T sharpness{};                       ///< force^2/(2 energy secant)
 };
 
 /// Hertz 1882: F = 4/3 E* sqrt(R) d^1.5; Mindlin 1949: tangential stiffness 8 G* sqrt(R d). Johnson 1985,
@@ -53,12 +55,8 @@ struct HertzMindlin {
     s.secant = (4.0 / 3.0) * p.youngs * a;
     s.tangential = 8.0 * p.shear * a;
     s.energy = 0.4 * s.secant * c.overlap * c.overlap;
+    s.sharpness = T{} + 1.25;
     return s;
-  }
-  /// Dashpot alpha sqrt(m k) d^(1/4) of Antypov & Elliott 2011, EPL 94:50004, with k d^(1/2) the secant.
-  template <class T>
-  EJECTA_INLINE static T dashpot(const NormalSpring<T>& s, const Contact<T>& c, const PairConstants<T>& p) {
-    return p.damping * root(c.mass * s.secant);
   }
 };
 
@@ -71,23 +69,29 @@ struct LinearSpring {
     s.secant = p.stiffness;
     s.tangential = (2.0 / 7.0) * p.stiffness;
     s.energy = 0.5 * p.stiffness * c.overlap * c.overlap;
+    s.sharpness = T{} + 1.0;
     return s;
   }
-  template <class T>
-  EJECTA_INLINE static T dashpot(const NormalSpring<T>& s, const Contact<T>& c, const PairConstants<T>& p) {
-    return p.damping * root(c.mass * s.secant);
-  }
 };
+
+/// Dashpot gamma F sqrt(m/(2 E)) of a spring of force F and energy E: with u = sqrt(2 E) as coordinate the
+/// motion is that of a linear oscillator whatever the law, so that gamma alone sets the restitution
+/// (contact_damping.hpp; Hertz's law gives that of Antypov & Elliott 2011, EPL 94:50004). Several contacts of
+/// two bodies are one such spring: of their common energy each holds a share.
+template <class T>
+EJECTA_INLINE T dashpot_of(const NormalSpring<T>& s, const Contact<T>& c, const PairConstants<T>& p) {
+  return p.damping * root(c.mass * c.share * s.sharpness * s.secant);
+}
 
 /// Force of a contact with friction. `slip` is the history: the stretch of the tangential spring (m), turned
 /// into the tangent plane, lengthened by the motion over dt and cut where the spring would exceed Coulomb's
 /// limit. The tangential dashpot is the normal one times sqrt(tangential / tangent stiffness), as for two
 /// oscillators of equal damping ratio (Tsuji, Tanaka & Ishida 1992, Powder Technol. 71:239).
-template <class Law, class T>
-EJECTA_INLINE ContactForce<T> contact_force(const Contact<T>& c, const PairConstants<T>& p,
-                                            bool allow_tension, double dt, Triple<T>& slip) {
-  const NormalSpring<T> s = Law::spring(c, p);
-  const T dashpot = Law::dashpot(s, c, p);
+template <class T>
+EJECTA_INLINE ContactForce<T> contact_force(const NormalSpring<T>& s, const Contact<T>& c,
+                                            const PairConstants<T>& p, bool allow_tension, double dt,
+                                            Triple<T>& slip) {
+  const T dashpot = dashpot_of(s, c, p);
   const T approach = dot(c.velocity, c.normal);  // > 0: parting
   T normal = s.secant * c.overlap - dashpot * approach;
   if (!allow_tension) normal = larger(normal, T{});
@@ -116,6 +120,12 @@ EJECTA_INLINE ContactForce<T> contact_force(const Contact<T>& c, const PairConst
   f.elastic_normal = s.energy;
   f.elastic_tangential = 0.5 * s.tangential * dot(slip, slip);
   return f;
+}
+
+template <class Law, class T>
+EJECTA_INLINE ContactForce<T> contact_force(const Contact<T>& c, const PairConstants<T>& p,
+                                            bool allow_tension, double dt, Triple<T>& slip) {
+  return contact_force(Law::spring(c, p), c, p, allow_tension, dt, slip);
 }
 
 /// Elastic-plastic rolling resistance (Iwashita & Oda 1998; type C of Ai et al. 2011, Powder Technol.

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 #include "base/error.hpp"
 #include "dem/contact_damping.hpp"
@@ -41,13 +40,6 @@ Materials::Materials(const Case& config)
         fmt::format("contact.linear_stiffness = {} N/m must be positive with law = \"linear\": a contact "
                     "without stiffness bears neither load nor friction (try 1e5 N/m)",
                     config.contact.linear_stiffness));
-  std::map<double, double> damping;  // of a restitution; bisecting for it is worth doing once
-  const auto damping_of = [&](double e) {
-    const auto found = damping.find(e);
-    if (found != damping.end()) return found->second;
-    return damping[e] = law_ == ContactLaw::linear ? damping_linear(e, allow_tension_)
-                                                   : damping_hertz(e, allow_tension_);
-  };
   for (const MaterialSpec& a : specs_)
     for (const MaterialSpec& b : specs_) {
       double restitution = std::min(a.restitution, b.restitution);
@@ -69,7 +61,7 @@ Materials::Materials(const Case& config)
                       (1 - b.poisson_ratio * b.poisson_ratio) / b.youngs_modulus);
       c.shear = 1 / ((2 - a.poisson_ratio) / shear_modulus(a) + (2 - b.poisson_ratio) / shear_modulus(b));
       c.stiffness = config.contact.linear_stiffness;
-      c.damping = damping_of(restitution);
+      c.damping = contact_damping(restitution, allow_tension_);
       // Hertz-Mindlin: 8 G* a over 2 E* a; linear: 2/7.
       c.drag = std::sqrt(law_ == ContactLaw::linear ? 2.0 / 7.0 : 4.0 * c.shear / c.youngs);
       c.friction = friction;

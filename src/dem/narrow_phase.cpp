@@ -10,35 +10,52 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-/// `solid` in axes that `rotation` and `origin` take to the world.
-Touch touch_ball_polytope(const BallRow& ball, const Polytope& solid, const Mat3& rotation,
-                          const Vec3& origin) {
+/// cos 60 degrees: a face that looks more than that against a contact is the far side of a solid.
+constexpr double kFarSide = -0.5;
+
+Touch touch_ball(const BallRow& ball, double distance, const Vec3& normal) {
   Touch t;
-  const Vec3 local = rotation.transpose() * (ball.centre() - origin);
-  if ((local - solid.centre).squaredNorm() >= (ball.radius + solid.radius) * (ball.radius + solid.radius))
-    return t;
-  const NearestPoint nearest = nearest_on_polytope(solid, local);
-  t.overlap = ball.radius - nearest.distance;
+  t.overlap = ball.radius - distance;
   if (!(t.overlap > 0)) return {};
-  t.normal = rotation * nearest.normal;
+  t.normal = normal;
   t.radius = t.size = ball.radius;
-  t.point = ball.centre() - (ball.radius - 0.5 * t.overlap) * t.normal;
+  t.point = ball.centre() - (ball.radius - 0.5 * t.overlap) * normal;
   return t;
 }
 
-Touch touch_ball_facet(const BallRow& ball, const Facet& f) {
-  const TrianglePoint nearest = nearest_on_triangle(ball.centre(), f.corners[0], f.corners[1], f.corners[2]);
-  const Vec3 out = ball.centre() - nearest.point;
-  const double height = f.normal.dot(out);
-  if (!f.owns[static_cast<std::size_t>(nearest.feature)] || height < -f.thickness) return {};
-  const bool face = nearest.feature == TriangleFeature::face;
-  const double distance = face ? height : out.norm();
-  if (!(distance < ball.radius) || (!face && !(height > 0))) return {};
-  Touch t;
-  t.normal = face ? f.normal : Vec3(out / distance);
-  t.overlap = ball.radius - distance;
-  t.radius = t.size = ball.radius;
-  t.point = ball.centre() - (ball.radius - 0.5 * t.overlap) * t.normal;
+/// `solid` in axes that `rotation` and `origin` take to the world. `face`: before which the ball's centre was
+/// when it was last outside.
+Touch touch_ball_polytope(const BallRow& ball, const Polytope& solid, const Mat3& rotation,
+                          const Vec3& origin, int face) {
+  const Vec3 local = rotation.transpose() * (ball.centre() - origin);
+  if ((local - solid.centre).squaredNorm() >= (ball.radius + solid.radius) * (ball.radius + solid.radius))
+    return {};
+  NearestPoint nearest = nearest_on_polytope(solid, local);
+  if (nearest.distance <= 0 && face >= 0) {
+    const Polytope::Face& f = solid.faces[static_cast<std::size_t>(face)];
+    nearest = {f.normal.dot(local) - f.offset, f.normal, face};
+  }
+  Touch t = touch_ball(ball, nearest.distance, rotation * nearest.normal);
+  t.face = nearest.face;
+  return t;
+}
+
+/// `centre`: of the ball among the wall's own images. `side`: on which it stood when it touched first.
+Touch touch_ball_triangle(const BallRow& ball, const Vec3& centre, const Surface& surface, int n, int side) {
+  const Surface::Triangle& f = surface.triangles()[static_cast<std::size_t>(n)];
+  const double height = f.normal.dot(centre - f.corners[0]);
+  if (std::abs(height) >= ball.radius && side == 0) return {};
+  const TrianglePoint nearest = nearest_on_triangle(centre, f.corners[0], f.corners[1], f.corners[2]);
+  const bool on_face = nearest.feature == TriangleFeature::face;
+  if (!on_face || side == 0) side = height < 0 ? -1 : 1;
+  const Vec3 out = centre - nearest.point;
+  const bool ghost = on_face && side < 0 && !surface.two_sided();
+  const double distance = ghost ? std::abs(height) : on_face ? side * height : out.norm();
+  Touch t =
+      touch_ball(ball, distance, on_face || !(distance > 0) ? Vec3(side * f.normal) : Vec3(out / distance));
+  t.on_face = on_face;
+  t.ghost = ghost && t.overlap > 0;
+  t.side = side;
   return t;
 }
 
@@ -51,7 +68,7 @@ Touch touch_ball_facet(const BallRow& ball, const Facet& f) {
 Touch touch_of(const Overlap& o, double size, const Mat3& rotation, const Vec3& origin) {
   Touch t;
   const double area = o.area.norm();
-  if (!(o.volume > 0) || !(area > 0)) return t;
+  if (!(o.volume > 0) || !(area > 1e-9 * std::pow(o.volume, 2.0 / 3.0))) return t;
   const double reference = kPi * size * size;
   t.normal = rotation * (o.area / area);
   t.overlap = 2.0 * o.volume / reference;
@@ -59,58 +76,181 @@ Touch touch_of(const Overlap& o, double size, const Mat3& rotation, const Vec3& 
   t.point = origin + rotation * o.centroid;
   t.patch_radius = std::sqrt(area / kPi);
   t.size = size;
-  t.depth = o.depth;
   t.thickness = o.volume / area;
   return t;
+}
+
+/// Whether the solid reaches beyond a plane.
+bool beyond(const Polytope& solid, const HalfSpace& plane) {
+  return plane.normal.dot(support_polytope(solid, plane.normal)) > plane.offset;
+}
+
+/// The faces of b (in axes that `rotation` and `shift` take to those of a) but for those on its far side, as
+/// seen along `out`. Nothing unless a reaches beyond one of these.
+bool without_far_side(const Polytope& b, const Mat3& rotation, const Vec3& shift, const Vec3& out,
+                      const Polytope& a, std::vector<HalfSpace>& planes) {
+  planes.clear();
+  bool pierced = false;
+  for (const Polytope::Face& f : b.faces) {
+    const Vec3 normal = rotation * f.normal;
+    const HalfSpace plane{normal, f.offset + normal.dot(shift)};
+    if (normal.dot(out) < kFarSide) pierced = pierced || beyond(a, plane);
+    else planes.push_back(plane);
+  }
+  return pierced && !planes.empty();
+}
+
+/// As overlap_polytopes. A solid that the other has gone through goes on behind: `out`, in the axes of a,
+/// whence the contact pushed a at the last step (zero: they did not touch), says which of its sides is met.
+Overlap overlap_solids(const Polytope& a, const Polytope& b, const Mat3& rotation, const Vec3& shift,
+                       const Vec3& out) {
+  if (!out.isZero()) {
+    thread_local std::vector<HalfSpace> planes;
+    if ((rotation * b.centre + shift - a.centre).norm() >= a.radius + b.radius) return {};
+    if (without_far_side(b, rotation, shift, out, a, planes)) return overlap_cell(a, planes);
+    const Mat3 back = rotation.transpose();
+    if (without_far_side(a, back, -(back * shift), -(back * out), b, planes)) {
+      Overlap o = overlap_cell(b, planes);
+      o.area = -(rotation * o.area);
+      o.centroid = rotation * o.centroid + shift;
+      return o;
+    }
+  }
+  Overlap o = overlap_polytopes(a, b, rotation, shift);
+  return o;
+}
+
+/// Of a polytope with what lies behind a region of a surface; z is measured from its plane. `side`: on which
+/// the polytope stood when it touched first, or 0.
+Touch touch_region(const PolytopePart& part, const Body& body, const Vec3& position, const Surface& surface,
+                   int n, int side) {
+  const Polytope& solid = *part.solid;
+  const Surface::Region& region = surface.regions()[static_cast<std::size_t>(n)];
+  const Mat3 turn = body.orientation.toRotationMatrix();
+  const Vec3 centre = position + turn * solid.centre;
+  const bool known = side != 0;
+  const double height = region.plane.normal.dot(centre) - region.plane.offset;
+  if (!known) {
+    if (std::abs(height) >= solid.radius) return {};
+    side = height < 0 ? -1 : 1;
+  }
+  const bool ghost = side < 0 && !surface.two_sided();
+  if (!known) {  // most regions near a body are not touched
+    const Vec3 down = turn.transpose() * Vec3(-side * region.plane.normal);
+    if (down.dot(support_polytope(solid, down)) <= down.dot(solid.centre) + std::abs(height)) return {};
+  }
+  Overlap sum;
+  thread_local std::vector<HalfSpace> planes;
+  const auto add_plane = [&](const Vec3& normal, double offset) {
+    planes.push_back({turn.transpose() * normal, offset - normal.dot(position)});
+  };
+  for (const Surface::Piece& piece : region.pieces) {
+    const double off = std::abs(region.plane.normal.dot(centre - piece.centre));
+    const double apart = std::sqrt(std::max(0.0, (centre - piece.centre).squaredNorm() - off * off));
+    if (apart > 2 * solid.radius + piece.radius) continue;
+    planes.clear();
+    add_plane(side * region.plane.normal, side * region.plane.offset);
+    for (const HalfSpace& s : piece.sides) add_plane(s.normal, s.offset);
+    const Overlap o = overlap_cell(solid, planes);
+    if (!(o.volume > 0)) continue;
+    sum.volume += o.volume;
+    sum.centroid += o.volume * o.centroid;
+    sum.depth += o.volume * o.depth;
+    sum.first += o.first;
+  }
+  if (!(sum.volume > 0) || ((!known || ghost) && !(sum.first > 0))) return {};
+  if (ghost) {
+    Touch t;
+    t.side = side;
+    return t;
+  }
+  sum.centroid /= sum.volume;
+  sum.depth /= sum.volume;
+  sum.area = std::max(sum.first, 1e-6 * std::pow(sum.volume, 2.0 / 3.0)) *
+             (turn.transpose() * Vec3(side * region.plane.normal));
+  Touch t = touch_of(sum, part.radius, turn, position);
+  t.depth = sum.depth;
+  t.side = side;
+  return t;
+}
+
+/// The ball's centre, or the body's position, among the images of a wall.
+Vec3 at_wall(const Vec3& point, const SolidPair& pair) { return point - pair.shift; }
+
+Touch touch_wall(const SolidPair& pair, const Parts& parts, std::span<const Body> bodies,
+                 std::span<const Wall> walls) {
+  const Wall& wall = walls[static_cast<std::size_t>(pair.b.index)];
+  const ContactHistory& h = pair.history;
+  if (pair.b.kind == PartKind::wall_triangle) {
+    BallRow ball = parts.row(pair.a.index);
+    const Vec3 centre = at_wall(ball.centre(), pair);
+    ball.x = centre.x(), ball.y = centre.y(), ball.z = centre.z();
+    return touch_ball_triangle(ball, centre, *wall.surface, pair.b.solid, h.side);
+  }
+  const PolytopePart& part = parts.polytope(pair.a.index);
+  const Body& body = bodies[static_cast<std::size_t>(pair.body_a)];
+  const Vec3 position = at_wall(body.position, pair);
+  if (pair.b.kind == PartKind::wall_region)
+    return touch_region(part, body, position, *wall.surface, pair.b.solid, h.side);
+  const Mat3 turn = body.orientation.toRotationMatrix();
+  if (pair.b.kind == PartKind::wall_plane) {
+    const Overlap o = overlap_half_space(*part.solid, turn.transpose() * wall.normal,
+                                         wall.offset - wall.normal.dot(position));
+    Touch t = touch_of(o, part.radius, turn, position);
+    t.depth = o.depth;
+    return t;
+  }
+  const Overlap o = overlap_solids(*part.solid, wall.solids[static_cast<std::size_t>(pair.b.solid)],
+                                   turn.transpose(), -(turn.transpose() * position),
+                                   turn.transpose() * Vec3(h.normal.x, h.normal.y, h.normal.z));
+  return touch_of(o, part.radius, turn, position);
 }
 
 }  // namespace
 
 Touch find_touch(const SolidPair& pair, const Parts& parts, std::span<const Body> bodies,
-                 std::span<const Wall> walls) {
-  const auto wall_of = [&](const PartKey& k) -> const Wall& {
-    return walls[static_cast<std::size_t>(k.index)];
-  };
-  const auto body_of = [&](int n) -> const Body& { return bodies[static_cast<std::size_t>(n)]; };
-  if (pair.a.kind == PartKind::ball) {
-    const BallRow& ball = parts.row(pair.a.index);
-    if (pair.b.kind == PartKind::wall_solid) {
-      const Wall& wall = wall_of(pair.b);
-      const std::size_t n = static_cast<std::size_t>(pair.b.solid);
-      return wall.facets.empty() ? touch_ball_polytope(ball, wall.solids[n], Mat3::Identity(), Vec3(0, 0, 0))
-                                 : touch_ball_facet(ball, wall.facets[n]);
+                 std::span<const Wall> walls, const Domain& domain) {
+  if (pair.body_b < 0) {
+    Touch t = touch_wall(pair, parts, bodies, walls);
+    if (!(t.overlap > 0)) return t;
+    // A wall may reach over a periodic side and so meet its own image: each counts on its side of it.
+    const Vec3 foot = pair.a.kind == PartKind::ball ? Vec3(t.point + 0.5 * t.overlap * t.normal) : t.point;
+    for (int c = 0; c < 3; ++c) {
+      const double slack = 1e-9 * domain.period[c];
+      if (domain.period[c] > 0 && (foot[c] < domain.low[c] - slack || foot[c] > domain.high[c] + slack))
+        return {};
     }
-    const Body& other = body_of(pair.body_b);
-    return touch_ball_polytope(ball, *parts.polytope(pair.b.index).solid,
-                               other.orientation.toRotationMatrix(), other.position + pair.shift);
+    t.point += pair.shift;
+    return t;
   }
-  const PolytopePart& part = parts.polytope(pair.a.index);
-  const Body& body = body_of(pair.body_a);
-  const Mat3 turn = body.orientation.toRotationMatrix();
-  if (pair.b.kind == PartKind::wall_plane) {
-    const Wall& wall = wall_of(pair.b);
-    const double offset = wall.offset - wall.normal.dot(body.position);
-    return touch_of(overlap_half_space(*part.solid, turn.transpose() * wall.normal, offset), part.radius,
-                    turn, body.position);
-  }
-  if (pair.b.kind == PartKind::wall_solid) {
-    const Wall& wall = wall_of(pair.b);
-    const std::size_t n = static_cast<std::size_t>(pair.b.solid);
-    Overlap o =
-        overlap_polytopes(*part.solid, wall.solids[n], turn.transpose(), -(turn.transpose() * body.position));
-    if (!wall.facets.empty()) {
-      // The sides of a prism are no surface: only its face pushes.
-      const Vec3 face = turn.transpose() * wall.facets[n].normal;
-      o.area = std::max(o.area.dot(face), 0.0) * face;
-    }
-    return touch_of(o, part.radius, turn, body.position);
-  }
+  const Body& other = bodies[static_cast<std::size_t>(pair.body_b)];
+  const Mat3 other_turn = other.orientation.toRotationMatrix();
   const PolytopePart& other_part = parts.polytope(pair.b.index);
-  const Body& other = body_of(pair.body_b);
-  return touch_of(overlap_polytopes(*part.solid, *other_part.solid,
-                                    turn.transpose() * other.orientation.toRotationMatrix(),
-                                    turn.transpose() * (other.position + pair.shift - body.position)),
+  if (pair.a.kind == PartKind::ball)
+    return touch_ball_polytope(parts.row(pair.a.index), *other_part.solid, other_turn,
+                               other.position + pair.shift, pair.history.face);
+  const PolytopePart& part = parts.polytope(pair.a.index);
+  const Body& body = bodies[static_cast<std::size_t>(pair.body_a)];
+  const Mat3 turn = body.orientation.toRotationMatrix();
+  const Triple<double>& normal = pair.history.normal;
+  return touch_of(overlap_solids(*part.solid, *other_part.solid, turn.transpose() * other_turn,
+                                 turn.transpose() * (other.position + pair.shift - body.position),
+                                 turn.transpose() * Vec3(normal.x, normal.y, normal.z)),
                   std::min(part.radius, other_part.radius), turn, body.position);
+}
+
+double distance_to(const SolidPair& pair, const Vec3& point, const Parts& parts, std::span<const Body> bodies,
+                   std::span<const Wall> walls) {
+  const Vec3 p = at_wall(point, pair);
+  if (pair.b.kind == PartKind::wall_triangle) {
+    const auto& c = walls[static_cast<std::size_t>(pair.b.index)]
+                        .surface->triangles()[static_cast<std::size_t>(pair.b.solid)]
+                        .corners;
+    return (p - nearest_on_triangle(p, c[0], c[1], c[2]).point).norm();
+  }
+  return nearest_on_polytope(*parts.polytope(pair.b.index).solid,
+                             bodies[static_cast<std::size_t>(pair.body_b)].to_body(p))
+      .distance;
 }
 
 }  // namespace ejecta

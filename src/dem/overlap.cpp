@@ -9,16 +9,11 @@ namespace {
 
 using Polygon = std::vector<Vec3>;
 
-struct Plane {
-  Vec3 normal;
-  double offset;
-};
-
 /// Buffers kept between calls: no step allocates.
 struct Scratch {
   Polygon polygon, clipped;
   std::vector<double> heights;
-  std::vector<Plane> planes;
+  std::vector<HalfSpace> planes, cell;
 };
 
 Scratch& scratch() {
@@ -27,7 +22,7 @@ Scratch& scratch() {
 }
 
 /// Keeps the part of s.polygon with height < 0 (Sutherland & Hodgman 1974). False if nothing is left.
-bool clip(Scratch& s, const Plane& plane) {
+bool clip(Scratch& s, const HalfSpace& plane) {
   const std::size_t count = s.polygon.size();
   s.heights.resize(count);
   bool any_in = false, any_out = false;
@@ -56,18 +51,15 @@ struct Sums {
   Vec3 moment{0, 0, 0};
 
   /// Adds a polygon; returns its vector area.
-  Vec3 add(const Polygon& p, Vec3& area_moment, double& area) {
+  Vec3 add(const Polygon& p) {
     Vec3 sum(0, 0, 0);
     const Vec3 a = p[0] - apex;
     for (std::size_t n = 1; n + 1 < p.size(); ++n) {
       const Vec3 b = p[n] - apex, c = p[n + 1] - apex;
       const Vec3 twice = (b - a).cross(c - a);
-      const double six_v = a.dot(twice), size = 0.5 * twice.norm();
-      const Vec3 corners = a + b + c;
+      const double six_v = a.dot(twice);
       volume += six_v / 6.0;
-      moment += six_v / 24.0 * corners;
-      area_moment += size / 3.0 * corners;
-      area += size;
+      moment += six_v / 24.0 * (a + b + c);
       sum += 0.5 * twice;
     }
     return sum;
@@ -85,7 +77,7 @@ void load_face(Scratch& s, const Polytope& p, const Polytope::Face& f, const Mat
 /// Planes that cut the ball about `centre`; the others cannot clip anything inside it. False if it is
 /// outside.
 bool planes_near(const Polytope& p, const Mat3& rotation, const Vec3& shift, double margin,
-                 const Vec3& centre, double radius, std::vector<Plane>& planes) {
+                 const Vec3& centre, double radius, std::vector<HalfSpace>& planes) {
   planes.clear();
   for (const Polytope::Face& f : p.faces) {
     const Vec3 normal = rotation * f.normal;
@@ -97,21 +89,42 @@ bool planes_near(const Polytope& p, const Mat3& rotation, const Vec3& shift, dou
   return true;
 }
 
-/// Clips the faces of p (moved) by the planes and adds what is left.
+/// Clips s.polygon by the planes. False if nothing is left.
+bool clip_all(Scratch& s, std::vector<HalfSpace>& planes, std::size_t skip) {
+  for (std::size_t n = 0; n < planes.size(); ++n) {
+    if (n == skip || clip(s, planes[n])) continue;
+    if (skip > planes.size()) std::swap(planes[n], planes[n / 2]);  // what rejects one often rejects the next
+    return false;
+  }
+  return true;
+}
+
+constexpr std::size_t kNone = static_cast<std::size_t>(-1);
+
+Vec3 add_polygon(const Scratch& s, Sums& sums, bool& started) {
+  if (!started) sums.apex = s.polygon[0];
+  started = true;
+  return sums.add(s.polygon);
+}
+
+/// Clips the faces of p (moved) by s.planes and adds what is left.
 Vec3 add_faces(Scratch& s, Sums& sums, bool& started, const Polytope& p, const Mat3& rotation,
-               const Vec3& shift, double margin, Vec3& area_moment, double& area) {
+               const Vec3& shift, double margin) {
   Vec3 total(0, 0, 0);
   for (const Polytope::Face& f : p.faces) {
     load_face(s, p, f, rotation, shift + margin * (rotation * f.normal));
-    bool left = true;
-    for (std::size_t n = 0; n < s.planes.size() && left; ++n) {
-      left = clip(s, s.planes[n]);
-      if (!left) std::swap(s.planes[n], s.planes[n / 2]);  // what rejects one face often rejects the next
-    }
-    if (!left) continue;
-    if (!started) sums.apex = s.polygon[0];
-    started = true;
-    total += sums.add(s.polygon, area_moment, area);
+    if (clip_all(s, s.planes, kNone)) total += add_polygon(s, sums, started);
+  }
+  return total;
+}
+
+/// Vector area of the seams of p (moved) within s.planes.
+Vec3 seams_within(Scratch& s, const Polytope& p, const Mat3& rotation, const Vec3& shift) {
+  Vec3 total(0, 0, 0);
+  Sums unused;
+  for (const Polytope::Face& f : p.seams) {
+    load_face(s, p, f, rotation, shift);
+    if (clip_all(s, s.planes, kNone)) total += unused.add(s.polygon);
   }
   return total;
 }
@@ -124,11 +137,9 @@ Overlap overlap_half_space(const Polytope& a, const Vec3& normal, double offset)
   Scratch& s = scratch();
   Sums sums;
   sums.apex = a.centre + (offset - normal.dot(a.centre)) * normal;  // on the plane: the lid spans no volume
-  Vec3 unused(0, 0, 0);
-  double area = 0.0;
   for (const Polytope::Face& f : a.faces) {
     load_face(s, a, f, Mat3::Identity(), Vec3(0, 0, 0));
-    if (clip(s, {normal, offset})) o.area -= sums.add(s.polygon, unused, area);
+    if (clip(s, {normal, offset})) o.area -= sums.add(s.polygon);
   }
   if (!(sums.volume > 0)) return {};
   o.area = std::max(o.area.dot(normal), 0.0) * normal;
@@ -146,22 +157,63 @@ Overlap overlap_polytopes(const Polytope& a, const Polytope& b, const Mat3& rota
   Scratch& s = scratch();
   Sums sums;
   bool started = false;
-  Vec3 moment_a(0, 0, 0), moment_b(0, 0, 0);
-  double size_a = 0.0, size_b = 0.0;
   // Faces of a and b in one plane would count twice: a is made larger by a hair, so that they lie apart.
   const double hair = 1e-10 * (a.radius + b.radius);
   if (!planes_near(a, Mat3::Identity(), Vec3(0, 0, 0), hair, centre_b, b.radius, s.planes)) return o;
-  const Vec3 area_b = add_faces(s, sums, started, b, rotation, translation, 0.0, moment_b, size_b);
+  const Vec3 area_b = add_faces(s, sums, started, b, rotation, translation, 0.0);
+  const Vec3 seams_b = seams_within(s, b, rotation, translation);
   if (!planes_near(b, rotation, translation, 0.0, a.centre, a.radius, s.planes)) return o;
-  const Vec3 area_a = add_faces(s, sums, started, a, Mat3::Identity(), Vec3(0, 0, 0), hair, moment_a, size_a);
-  if (!(sums.volume > 0) || !(size_a > 0) || !(size_b > 0)) return {};
+  const Vec3 area_a = add_faces(s, sums, started, a, Mat3::Identity(), Vec3(0, 0, 0), hair);
+  if (!(sums.volume > 0)) return {};
   o.volume = sums.volume;
   o.centroid = sums.apex + sums.moment / sums.volume;
-  o.area = 0.5 * (area_b - area_a);
-  const Vec3 normal = o.area.normalized();
-  const double middle = normal.dot(o.centroid - sums.apex);
-  o.depth = std::max(std::abs(normal.dot(moment_a) / size_a - middle),
-                     std::abs(normal.dot(moment_b) / size_b - middle));
+  // The two areas are opposite, but where a seam takes part only the other solid's is all surface.
+  const Vec3 seams_a = seams_within(s, a, Mat3::Identity(), Vec3(0, 0, 0));
+  const bool cut_a = !seams_a.isZero(), cut_b = !seams_b.isZero();
+  o.area = cut_a == cut_b ? Vec3(0.5 * ((area_b - seams_b) - (area_a - seams_a)))
+           : cut_b        ? Vec3(area_b - seams_b)
+                          : Vec3(seams_a - area_a);
+  return o;
+}
+
+Overlap overlap_cell(const Polytope& a, std::span<const HalfSpace> planes) {
+  Overlap o;
+  Scratch& s = scratch();
+  s.cell.clear();
+  bool first_cuts = false;
+  for (std::size_t n = 0; n < planes.size(); ++n) {
+    const double height = planes[n].normal.dot(a.centre) - planes[n].offset;
+    if (height >= a.radius) return o;
+    if (height <= -a.radius) continue;
+    first_cuts = first_cuts || n == 0;
+    s.cell.push_back(planes[n]);
+  }
+  const double hair = 1e-10 * a.radius;  // as in overlap_polytopes
+  Sums sums;
+  bool started = false;
+  if (!s.cell.empty())
+    sums.apex = a.centre + (s.cell[0].offset - s.cell[0].normal.dot(a.centre)) * s.cell[0].normal;
+  started = !s.cell.empty();  // on the first plane: its lid spans no volume
+  s.planes = s.cell;
+  add_faces(s, sums, started, a, Mat3::Identity(), Vec3(0, 0, 0), hair);
+  for (std::size_t k = 0; k < s.cell.size(); ++k) {
+    const Vec3& normal = s.cell[k].normal;
+    const Vec3 middle = a.centre + (s.cell[k].offset - normal.dot(a.centre)) * normal;
+    const Vec3 u = 2 * a.radius * normal.unitOrthogonal(), v = normal.cross(u);
+    s.polygon.assign({middle - u - v, middle + u - v, middle + u + v, middle - u + v});
+    if (!clip_all(s, s.cell, k)) continue;
+    bool left = true;
+    for (std::size_t f = 0; f < a.faces.size() && left; ++f)
+      left = clip(s, {a.faces[f].normal, a.faces[f].offset + hair});
+    if (!left) continue;
+    const Vec3 lid = sums.add(s.polygon);
+    o.area += lid;
+    if (k == 0 && first_cuts) o.first = lid.norm();
+  }
+  if (!(sums.volume > 0)) return {};
+  o.volume = sums.volume;
+  o.centroid = sums.apex + sums.moment / sums.volume;
+  o.depth = planes[0].offset - planes[0].normal.dot(o.centroid);
   return o;
 }
 

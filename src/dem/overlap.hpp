@@ -1,4 +1,6 @@
 #pragma once
+#include <span>
+
 #include "shape/polytope.hpp"
 
 namespace ejecta {
@@ -8,11 +10,15 @@ struct Overlap {
   double volume = 0.0;     ///< m3
   Vec3 centroid{0, 0, 0};  ///< m
   Vec3 area{0, 0, 0};      ///< m2, vector area of b's surface inside a; its direction pushes a out of b
-  double depth = 0.0;      ///< m, of the centroid below the flatter of the two surfaces
+  double depth = 0.0;      ///< m, of the centroid below the plane or the first plane of a cell
+  double first = 0.0;      ///< m2, of the first plane of a cell inside a
 };
 
 /// Of a polytope with the half-space normal . x < offset.
 Overlap overlap_half_space(const Polytope& a, const Vec3& normal, double offset);
+
+/// Of a polytope with all that lies within the planes; `area` is that of all of them inside a.
+Overlap overlap_cell(const Polytope& a, std::span<const HalfSpace> planes);
 
 /// Of two polytopes; p -> rotation * p + translation takes b's axes to a's.
 Overlap overlap_polytopes(const Polytope& a, const Polytope& b, const Mat3& rotation,

@@ -232,7 +232,7 @@ void Particles::find_contacts(double dt) {
     balls_.compute(parts_, materials_, domain_, dt);
   }
   ScopedTimer timer(times_.solids);
-  solids_.compute(parts_, bodies_, walls_, materials_, velocity_, spin_, dt);
+  solids_.compute(parts_, bodies_, walls_, materials_, domain_, velocity_, spin_, dt);
   collect_solids();
 }
 
@@ -269,9 +269,43 @@ void Particles::list_candidates(double dt) {
   // often, in inverse proportion. The cheapest, with the factor measured on settling spheres, is
   skin_ = std::clamp(2.8 * std::sqrt(fastest * dt * smallest_), 0.01 * smallest_, smallest_);
   relist_ = false;
-  search_.find(parts_, bodies_, walls_, domain_, skin_);
-  balls_.set_pairs(search_.balls(), search_.planes(), walls_, parts_.ball_count());
+  search_.find(parts_, bodies_, walls_, domain_, skin_, &balls_);
+  note_friction();
+  balls_.set_pairs(search_.balls(), search_.planes(), parts_);
   solids_.set_pairs(search_.solids());
+  pass_friction_on();
+}
+
+void Particles::note_friction() {
+  friction_.clear();
+  if (planes_.size() == walls_.size()) return;  // no surfaces
+  for (const SolidPair& p : solids_.pairs()) {
+    const ContactHistory& h = p.history;
+    if (p.b.kind == PartKind::wall_triangle && h.touched())
+      friction_.push_back({p.a.index,
+                           p.b.index,
+                           Vec3(h.normal.x, h.normal.y, h.normal.z),
+                           {h.slip.x, h.slip.y, h.slip.z, h.roll.x, h.roll.y, h.roll.z},
+                           false});
+  }
+  for (int n = 0; n < balls_.pair_count(); ++n) {
+    const auto [ball, plane] = balls_.pair(n);
+    if (plane >= 0 || !(balls_.row(n).half_overlap > 0)) continue;
+    const WallPlane& w = planes_[static_cast<std::size_t>(-1 - plane)];
+    if (!walls_[static_cast<std::size_t>(w.wall)].is_plane)
+      friction_.push_back({ball, w.wall, w.normal, balls_.friction(n), true});
+  }
+}
+
+void Particles::pass_friction_on() {
+  for (const Friction& f : friction_) {
+    const Wall& wall = walls_[static_cast<std::size_t>(f.wall)];
+    const int planes = 2 * static_cast<int>(wall.surface->regions().size());
+    const int as_plane = balls_.find_plane(f.ball, wall.first_plane, wall.first_plane + planes);
+    if (f.plane ? as_plane < 0 : as_plane >= 0 && balls_.friction(as_plane) == std::array<double, 6>{})
+      f.plane ? solids_.hand_over(f.ball, f.wall, f.normal, f.history)
+              : balls_.set_friction(as_plane, f.history);
+  }
 }
 
 /// Forces of contacts in which walls and polytopes take part, body by body in the order of the contacts.

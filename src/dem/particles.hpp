@@ -86,8 +86,12 @@ class Particles {
   void place(int index, const Vec3& position, const Quat& orientation, const Vec3& velocity,
              const Vec3& angular_velocity);
 
-  /// Throws InputError naming the pair that overlaps most, if by more than a thousandth of its size.
+  /// Throws InputError naming the pair that overlaps most, if by more than a thousandth of its size, or a
+  /// body that is to enter where a wall is.
   void require_apart();
+  /// A sentence for each body that has been dented deeper than a tenth of its smallest width: springs stand
+  /// for small dents.
+  std::vector<std::string> deep_dents() const;
 
   /// Everything that changes in time, contact history included: restore() continues to the same bits.
   std::vector<double> state() const;
@@ -116,6 +120,17 @@ class Particles {
   Vec3 acceleration(std::size_t n, std::span<const Load> loads) const;
   Vec3 torque_on(std::size_t n, std::span<const Load> loads) const;
   void list_candidates(double dt);
+  void note_friction();
+  void pass_friction_on();
+  /// How deep a body lies in something.
+  struct Dent {
+    double overlap = 0.0;     // m; 0: nowhere by more than a thousandth of its size
+    int body = 0, other = 0;  // other: body, or -1 - n for wall n
+    Vec3 normal{0, 0, 1};     // the way out
+  };
+  Dent deepest(const CandidateSearch& found) const;
+  Dent deepest_in_walls(std::size_t n) const;
+  void require_clear(const Dent& dent, const char* when) const;
   [[noreturn]] void throw_diverged() const;
 
   Vec3 gravity_;
@@ -125,6 +140,7 @@ class Particles {
   double time_ = 0.0;
   std::vector<Body> bodies_;
   std::vector<Wall> walls_;
+  std::vector<WallPlane> planes_;
   std::vector<Vec3> momentum_;         // angular, world, kg m2/s
   std::vector<Vec3> force_, torque_;   // of contacts at the last sub-step
   std::vector<Vec3> velocity_, spin_;  // as the contact laws see them: extrapolated to the whole step
@@ -155,6 +171,15 @@ class Particles {
   Work power_;  // at the last sub-step
   Parts parts_;
   CandidateSearch search_;
+  mutable CandidateSearch look_;  // of single bodies
+  /// What a ball's contact with a surface remembers, for when its pair turns from triangle to plane or back.
+  struct Friction {
+    int ball = 0, wall = 0;
+    Vec3 normal{0, 0, 1};
+    std::array<double, 6> history{};
+    bool plane = false;
+  };
+  std::vector<Friction> friction_;
   BallContacts balls_;
   SolidContacts solids_;
   double skin_ = 0.0;      // m, candidates are pairs with gap < skin

@@ -27,6 +27,7 @@ void Parts::add(const Body& body, int index) {
     polytopes_.push_back({index, &p, radius});
     arm = std::max(arm, p.centre.norm());
   }
+  several_ = several_ || body.shape.balls().size() > 1;
   arm_.push_back(arm);
   here_.push_back(true);
   first_ball_.push_back(ball_count());

@@ -38,6 +38,8 @@ class Parts {
   /// One row more than balls: the last one never touches anything.
   std::span<const BallRow> rows() const { return rows_; }
   const BallRow& row(int ball) const { return rows_[static_cast<std::size_t>(ball)]; }
+  int ball_count(int body) const { return first_ball(body + 1) - first_ball(body); }
+  bool any_of_several_balls() const { return several_; }
   int body_of_ball(int ball) const { return ball_body_[static_cast<std::size_t>(ball)]; }
   const PolytopePart& polytope(int n) const { return polytopes_[static_cast<std::size_t>(n)]; }
   /// Balls of a body: [first_ball(body), first_ball(body + 1)).
@@ -62,6 +64,7 @@ class Parts {
   std::vector<double> arm_;
   std::vector<char> here_;
   std::vector<int> first_ball_{0}, first_polytope_{0};
+  bool several_ = false;
 };
 
 /// 1/mass as contacts see it: fixed and prescribed bodies cannot be pushed.

@@ -18,6 +18,9 @@ namespace {
 /// Added to the stored presence of a body that its release has not moved yet: the time alone does not tell.
 constexpr int kWaitsForRelease = 3;
 
+constexpr double kTouching = 1e-3;  // of the size: bodies that overlap less only touch
+constexpr double kDeepDent = 0.1;   // of the smallest width
+
 void append(std::vector<double>& out, const Vec3& v) { out.insert(out.end(), v.data(), v.data() + 3); }
 
 }  // namespace
@@ -84,7 +87,16 @@ void Particles::remove(int index) {
 }
 
 void Particles::add(Wall wall) {
+  const int index = static_cast<int>(walls_.size());
+  wall.first_plane = static_cast<int>(planes_.size());
+  if (wall.is_plane) planes_.push_back({wall.normal, wall.offset, index});
+  else
+    for (const Surface::Region& r : wall.surface->regions())
+      for (const double side : {1.0, -1.0})
+        planes_.push_back({side * r.plane.normal, side * r.plane.offset, index});
   walls_.push_back(std::move(wall));
+  for (std::size_t n = static_cast<std::size_t>(walls_.back().first_plane); n < planes_.size(); ++n)
+    balls_.add(planes_[n], walls_.back());
   relist_ = true;
 }
 
@@ -102,43 +114,83 @@ void Particles::place(int index, const Vec3& position, const Quat& orientation, 
   relist_ = true;
 }
 
-void Particles::require_apart() {
-  search_.find(parts_, bodies_, walls_, domain_, 0.0);
-  double worst = 0.0;
-  std::string message;
-  const auto report = [&](double overlap, double size, int a, const std::string& other, const Vec3& normal) {
-    if (!(overlap > 1e-3 * size) || !(overlap > worst)) return;
-    worst = overlap;
-    message = fmt::format(
-        "body \"{}\" overlaps {} by {:.4g} mm at the start; move it by at least that along ({:.3f}, "
-        "{:.3f}, {:.3f})",
-        bodies_[static_cast<std::size_t>(a)].name, other, 1e3 * overlap, normal.x(), normal.y(), normal.z());
+Particles::Dent Particles::deepest(const CandidateSearch& found) const {
+  Dent worst;
+  const auto note = [&](double overlap, double size, int body, int other, const Vec3& normal) {
+    if (overlap > kTouching * size && overlap > worst.overlap) worst = {overlap, body, other, normal};
   };
-  const auto name = [&](int body) {
-    return fmt::format("body \"{}\"", bodies_[static_cast<std::size_t>(body)].name);
-  };
-  for (const auto& [i, j] : search_.balls()) {
+  for (const auto& [i, j] : found.balls()) {
     const BallRow &a = parts_.row(i), &b = parts_.row(j);
     const Vec3 apart = domain_.nearest(a.centre() - b.centre());
-    report(a.radius + b.radius - apart.norm(), std::min(a.radius, b.radius), parts_.body_of_ball(i),
-           name(parts_.body_of_ball(j)), apart.normalized());
+    note(a.radius + b.radius - apart.norm(), std::min(a.radius, b.radius), parts_.body_of_ball(i),
+         parts_.body_of_ball(j), apart.normalized());
   }
-  const auto wall_name = [&](int wall) {
-    return fmt::format("wall \"{}\"", walls_[static_cast<std::size_t>(wall)].name);
-  };
-  for (const auto& [i, w] : search_.planes()) {
+  for (const auto& [i, n] : found.planes()) {
     const BallRow& ball = parts_.row(i);
-    const Wall& wall = walls_[static_cast<std::size_t>(w)];
-    report(ball.radius + wall.offset - wall.normal.dot(ball.centre()), ball.radius, parts_.body_of_ball(i),
-           wall_name(w), wall.normal);
+    const WallPlane& plane = planes_[static_cast<std::size_t>(n)];
+    note(ball.radius + plane.offset - plane.normal.dot(ball.centre()), ball.radius, parts_.body_of_ball(i),
+         -1 - plane.wall, plane.normal);
   }
-  for (const SolidPair& p : search_.solids()) {
-    const Touch t = find_touch(p, parts_, bodies_, walls_);
-    if (!(t.overlap > 0)) continue;
-    const std::string other = p.body_b >= 0 ? name(p.body_b) : wall_name(p.b.index);
-    report(t.thickness > 0 ? t.thickness : t.overlap, t.size, p.body_a, other, t.normal);
+  for (const SolidPair& p : found.solids()) {
+    const Touch t = find_touch(p, parts_, bodies_, walls_, domain_);
+    if (!(t.overlap > 0) || t.ghost) continue;
+    note(t.thickness > 0 ? t.thickness : t.overlap, t.size, p.body_a,
+         p.body_b >= 0 ? p.body_b : -1 - p.b.index, t.normal);
   }
-  if (worst > 0) throw InputError(message);
+  return worst;
+}
+
+/// Also where no surface is near: in the middle of what one bounds.
+Particles::Dent Particles::deepest_in_walls(std::size_t n) const {
+  const int body = static_cast<int>(n);
+  look_.find_walls(body, parts_, bodies_, walls_, domain_);
+  Dent worst = deepest(look_);
+  for (std::size_t w = 0; w < walls_.size(); ++w) {
+    if (walls_[w].is_plane) continue;
+    const auto inside = [&](const Vec3& centre, double size) {
+      if (worst.overlap < size && walls_[w].surface->contains(centre))
+        worst = {size, body, -1 - static_cast<int>(w), Vec3(0, 0, 1)};
+    };
+    for (int k = parts_.first_ball(body); k < parts_.first_ball(body + 1); ++k)
+      inside(parts_.row(k).centre(), parts_.row(k).radius);
+    for (int k = parts_.first_polytope(body); k < parts_.first_polytope(body + 1); ++k)
+      inside(bodies_[n].to_world(parts_.polytope(k).solid->centre), parts_.polytope(k).radius);
+  }
+  return worst;
+}
+
+void Particles::require_clear(const Dent& dent, const char* when) const {
+  if (!(dent.overlap > 0)) return;
+  const auto other = dent.other < 0 ? walls_[static_cast<std::size_t>(-1 - dent.other)].name
+                                    : bodies_[static_cast<std::size_t>(dent.other)].name;
+  throw InputError(
+      fmt::format("body \"{}\" overlaps {} \"{}\" by {:.4g} mm {}; move it by at least that along ({:.3f}, "
+                  "{:.3f}, {:.3f})",
+                  bodies_[static_cast<std::size_t>(dent.body)].name, dent.other < 0 ? "wall" : "body", other,
+                  1e3 * dent.overlap, when, dent.normal.x(), dent.normal.y(), dent.normal.z()));
+}
+
+void Particles::require_apart() {
+  search_.find(parts_, bodies_, walls_, domain_, 0.0);
+  require_clear(deepest(search_), "at the start");
+  for (std::size_t n = 0; n < bodies_.size(); ++n)
+    if (bodies_[n].motion == Motion::free && presence_[n] != Presence::gone)
+      require_clear(deepest_in_walls(n),
+                    presence_[n] == Presence::here ? "at the start" : "where it is to enter");
+}
+
+std::vector<std::string> Particles::deep_dents() const {
+  std::vector<std::string> sentences;
+  for (std::size_t n = 0; n < bodies_.size(); ++n) {
+    const double width = bodies_[n].shape.smallest_feature(), share = peaks_[n].overlap / width;
+    if (!(share > kDeepDent)) continue;
+    sentences.push_back(
+        fmt::format("body \"{}\" was dented by {:.3g} mm, {:.0f} % of its smallest width ({:.3g} mm): forces "
+                    "of contacts that "
+                    "deep are not to be trusted; a larger youngs_modulus makes them shallower",
+                    bodies_[n].name, 1e3 * peaks_[n].overlap, 100 * share, 1e3 * width));
+  }
+  return sentences;
 }
 
 DemEnergy Particles::energy() const {
@@ -162,9 +214,10 @@ std::vector<ContactRecord> Particles::contacts() const {
     if (!(row.half_overlap > 0)) continue;
     const auto [a, b] = balls_.pair(n);
     const BallRow& ball = parts_.row(a);
-    const Vec3 normal = b < 0 ? walls_[static_cast<std::size_t>(-1 - b)].normal
-                              : domain_.nearest(ball.centre() - parts_.row(b).centre()).normalized();
-    records.push_back({parts_.body_of_ball(a), b < 0 ? b : parts_.body_of_ball(b),
+    const WallPlane* plane = b < 0 ? &planes_[static_cast<std::size_t>(-1 - b)] : nullptr;
+    const Vec3 normal =
+        plane ? plane->normal : domain_.nearest(ball.centre() - parts_.row(b).centre()).normalized();
+    records.push_back({parts_.body_of_ball(a), plane ? -1 - plane->wall : parts_.body_of_ball(b),
                        ball.centre() - (ball.radius - row.half_overlap) * normal, normal,
                        Vec3(row.fx, row.fy, row.fz), 2 * row.half_overlap});
   }

@@ -9,7 +9,11 @@
 namespace ejecta {
 namespace {
 
-constexpr int kBlock = 32;  // pairs one thread takes at a time
+constexpr int kBlock = 32;           // pairs, or groups of them, one thread takes at a time
+constexpr double kSameWay = 0.906;   // cosine of 25 degrees: normals of one hollow
+constexpr double kLeastDepth = 0.5;  // energy of a flat contact over force x mean thickness: a face; to
+constexpr double kMostDepth = 0.75;  // that of a corner
+constexpr double kFirstDepth = 2 / 3.0;
 
 Triple<double> triple(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
 Vec3 vec(const Triple<double>& t) { return {t.x, t.y, t.z}; }
@@ -21,17 +25,24 @@ struct Side {
   Vec3 velocity{0, 0, 0}, spin{0, 0, 0};  // m/s at the contact point, rad/s
 };
 
-void apply_law(SolidPair& pair, const Side& a, const Side& b, const Materials& materials, double dt) {
+/// Of a contact: what the law needs.
+struct Meeting {
+  Side a, b;
+  Contact<double> contact;
+  NormalSpring<double> spring;
+};
+
+bool same_surface(const SolidPair& p, const SolidPair& q) {
+  if (p.a != q.a || p.b.kind != q.b.kind) return false;
+  return p.b.kind == PartKind::wall_triangle ? p.b.index == q.b.index : p.body_b == q.body_b;
+}
+
+void apply_law(SolidPair& pair, Meeting& m, const PairConstants<double>& p, bool tension, double dt) {
   const Touch& t = pair.touch;
-  const PairConstants<double>& p = materials.pair(a.material, b.material);
-  Contact<double> c{triple(t.normal), t.overlap, t.radius, 1.0 / (a.inverse_mass + b.inverse_mass),
-                    triple(a.velocity - b.velocity)};
-  const bool tension = materials.allow_tension();
   ContactHistory& h = pair.history;
-  const ContactForce<double> f = materials.law() == ContactLaw::linear
-                                     ? contact_force<LinearSpring>(c, p, tension, dt, h.slip)
-                                     : contact_force<HertzMindlin>(c, p, tension, dt, h.slip);
-  const Vec3 spin = a.spin - b.spin;
+  Contact<double>& c = m.contact;
+  const ContactForce<double> f = contact_force(m.spring, c, p, tension, dt, h.slip);
+  const Vec3 spin = m.a.spin - m.b.spin;
   pair.force = vec(f.force);
   pair.moment = vec(patch_moment(t.patch_radius, c.normal, p, f, triple(spin), dt, h.twist));
   if (p.rolling > 0) {
@@ -39,11 +50,57 @@ void apply_law(SolidPair& pair, const Side& a, const Side& b, const Materials& m
     pair.moment += vec(rolling_moment(c, p, f, triple(spin), dt, h.roll));
   }
   const double twisting = 0.25 * f.tangential_stiffness * t.patch_radius * t.patch_radius * h.twist * h.twist;
-  pair.elastic = (t.depth > 0 ? f.spring * t.depth : f.elastic_normal) + f.elastic_tangential + twisting;
-  pair.wall_power = pair.body_b < 0 ? pair.force.dot(b.velocity) : 0.0;
+  pair.elastic = pair.stored + f.elastic_tangential + twisting;
+  pair.wall_power = pair.body_b < 0 ? pair.force.dot(m.b.velocity) : 0.0;
+  h.normal = c.normal;
+  h.side = t.side;
+  h.face = t.face;
 }
 
 }  // namespace
+
+struct SolidContacts::World {
+  const Parts& parts;
+  std::span<const Body> bodies;
+  std::span<const Wall> walls;
+  const Materials& materials;
+  std::span<const Vec3> velocity, spin;
+
+  const Surface& surface(const SolidPair& p) const {
+    return *walls[static_cast<std::size_t>(p.b.index)].surface;
+  }
+  Side side_of_body(int body, const Vec3& point) const {
+    const std::size_t n = static_cast<std::size_t>(body);
+    return {bodies[n].material, inverse_mass(bodies[n]),
+            velocity[n] + spin[n].cross(point - bodies[n].position), spin[n]};
+  }
+  Side side_of_ball(int ball, const Vec3& point) const {
+    const BallRow& row = parts.row(ball);
+    return {static_cast<int>(row.material), row.inverse_mass,
+            row.velocity() + row.spin().cross(point - row.centre()), row.spin()};
+  }
+  Meeting meet(const SolidPair& pair) const {
+    const Touch& t = pair.touch;
+    Meeting m;
+    m.a = pair.a.kind == PartKind::ball ? side_of_ball(pair.a.index, t.point)
+                                        : side_of_body(pair.body_a, t.point);
+    if (pair.body_b >= 0) {
+      m.b = side_of_body(pair.body_b, t.point - pair.shift);
+    } else {
+      const Wall& wall = walls[static_cast<std::size_t>(pair.b.index)];
+      m.b = {wall.material, 0.0, wall.velocity, Vec3(0, 0, 0)};
+    }
+    m.contact = {triple(t.normal), t.overlap, t.radius, 1.0 / (m.a.inverse_mass + m.b.inverse_mass),
+                 triple(m.a.velocity - m.b.velocity)};
+    const PairConstants<double>& p = constants(m);
+    m.spring = materials.law() == ContactLaw::linear ? LinearSpring::spring(m.contact, p)
+                                                     : HertzMindlin::spring(m.contact, p);
+    return m;
+  }
+  const PairConstants<double>& constants(const Meeting& m) const {
+    return materials.pair(m.a.material, m.b.material);
+  }
+};
 
 void SolidContacts::set_pairs(std::vector<SolidPair>& pairs) {
   std::size_t old = 0;
@@ -53,41 +110,161 @@ void SolidContacts::set_pairs(std::vector<SolidPair>& pairs) {
     if (old < pairs_.size() && key(pairs_[old]) == key(p)) p.history = pairs_[old].history;
   }
   pairs_.swap(pairs);
+  arrange();
+}
+
+void SolidContacts::hand_over(int ball, int wall, const Vec3& normal, const std::array<double, 6>& friction) {
+  const PartKey a{PartKind::ball, ball}, b{PartKind::wall_triangle, wall};
+  const auto found =
+      std::lower_bound(pairs_.begin(), pairs_.end(), std::pair(a, b),
+                       [](const SolidPair& p, const auto& key) { return std::pair(p.a, p.b) < key; });
+  if (found == pairs_.end() || found->a != a || found->b.kind != b.kind || found->b.index != wall) return;
+  ContactHistory& h = found->history;
+  if (h.touched()) return;
+  h.normal = triple(normal);
+  h.slip = {friction[0], friction[1], friction[2]};
+  h.roll = {friction[3], friction[4], friction[5]};
+}
+
+void SolidContacts::arrange() {
+  const int count = static_cast<int>(pairs_.size());
+  const auto pair = [&](int n) -> const SolidPair& { return pairs_[static_cast<std::size_t>(n)]; };
+  runs_.clear();
+  for (int n = 0, end = 0; n < count; n = end) {
+    end = n + 1;
+    if (pair(n).a.kind != PartKind::ball) continue;
+    while (end < count && same_surface(pair(n), pair(end))) ++end;
+    if (end > n + 1) runs_.insert(runs_.end(), {n, end});
+  }
+  order_.resize(pairs_.size());
+  std::iota(order_.begin(), order_.end(), 0);
+  const auto bodies = [&](int n) { return std::pair(pair(n).body_a, pair(n).body_b); };
+  std::sort(order_.begin(), order_.end(),
+            [&](int n, int m) { return std::pair(bodies(n), n) < std::pair(bodies(m), m); });
+  first_.clear();
+  for (int n = 0; n < count; ++n)
+    if (n == 0 ||
+        bodies(order_[static_cast<std::size_t>(n)]) != bodies(order_[static_cast<std::size_t>(n - 1)]))
+      first_.push_back(n);
+  first_.push_back(count);
+}
+
+/// Which contacts of a ball with one surface count, however the surface is divided: those where its distance
+/// is least in all directions along the surface. A rim is none where another part that has it is nearer; and
+/// in a hollow flatter than that the ball's dents would stay apart, the deepest is the contact. What the
+/// others remember of friction goes to the contact that takes their place.
+void SolidContacts::choose(const World& world, int begin, int end) {
+  const auto pair = [&](int n) -> SolidPair& { return pairs_[static_cast<std::size_t>(n)]; };
+  const double radius = world.parts.row(pair(begin).a.index).radius;
+  thread_local std::vector<int> deepest;
+  deepest.clear();
+  for (int n = begin; n < end; ++n)
+    if (pair(n).touch.overlap > 0) deepest.push_back(n);
+  if (deepest.empty()) return;
+  std::sort(deepest.begin(), deepest.end(), [&](int n, int m) {
+    return std::pair(-pair(n).touch.overlap, n) < std::pair(-pair(m).touch.overlap, m);
+  });
+  const auto on_rim_of = [&](const SolidPair& p, const SolidPair& q) {
+    if (p.touch.on_face || !(q.touch.overlap > p.touch.overlap + 1e-9 * radius)) return false;
+    const double slack = q.b.kind == PartKind::wall_triangle ? 2 * world.surface(q).tolerance() : 0.0;
+    const Vec3 foot = p.touch.point + 0.5 * p.touch.overlap * p.touch.normal;
+    return distance_to(q, foot, world.parts, world.bodies, world.walls) <= 1e-6 * radius + slack;
+  };
+  thread_local std::vector<int> chosen;
+  chosen.clear();
+  for (std::size_t n = 0; n < deepest.size(); ++n) {
+    SolidPair& p = pair(deepest[n]);
+    for (std::size_t m = 0; m < n && !p.hidden; ++m) {
+      const Touch& q = pair(deepest[m]).touch;
+      p.hidden = on_rim_of(p, pair(deepest[m]));
+      if (p.hidden) p.touch.side = q.side;  // the surface goes on there, with the same sides
+    }
+    for (std::size_t m = 0; m < chosen.size() && !p.hidden; ++m)
+      p.hidden = pair(chosen[m]).touch.normal.dot(p.touch.normal) > kSameWay;
+    if (!p.hidden) chosen.push_back(deepest[n]);
+  }
+  for (const int n : chosen) {
+    SolidPair& p = pair(n);
+    if (p.history.touched() || p.touch.ghost) continue;
+    for (int m = begin; m < end; ++m) {
+      ContactHistory& h = pair(m).history;
+      if (!h.touched() || (pair(m).touch.overlap > 0 && !pair(m).hidden)) continue;
+      if (!(vec(h.normal).dot(p.touch.normal) > kSameWay)) continue;
+      p.history.slip = h.slip;
+      p.history.roll = h.roll;
+      h = {};
+      break;
+    }
+  }
+}
+
+/// What a flat contact has stored: exactly that of a plane; else the work done on its spring, held between
+/// that of a face and that of a corner, so that nothing adds up in a contact that lasts.
+void SolidContacts::apply_laws(const World& world, int begin, int end, double dt) {
+  const auto pair = [&](int n) -> SolidPair& {
+    return pairs_[static_cast<std::size_t>(order_[static_cast<std::size_t>(n)])];
+  };
+  thread_local std::vector<Meeting> meetings;
+  meetings.clear();
+  for (int n = begin; n < end; ++n) {
+    SolidPair& p = pair(n);
+    p.force.setZero();
+    p.moment.setZero();
+    p.stored = p.elastic = p.wall_power = 0.0;
+    if (p.hidden || p.touch.ghost) p.touch.overlap = 0.0;
+    meetings.emplace_back();
+    if (!(p.touch.overlap > 0)) {
+      p.history = {};
+      p.history.side = p.touch.side;
+      continue;
+    }
+    Meeting& m = meetings.back() = world.meet(p);
+    const Touch& t = p.touch;
+    if (t.thickness > 0) {
+      const double force = m.spring.secant * t.overlap, most = force * t.thickness;
+      if (t.depth > 0) {
+        m.spring.energy = force * t.depth;
+      } else {
+        ContactHistory& h = p.history;
+        const double power = -force * dot(m.contact.velocity, m.contact.normal);
+        const double energy = h.touched() ? h.energy + 0.5 * dt * (h.power + power) : kFirstDepth * most;
+        m.spring.energy = h.energy = std::clamp(energy, kLeastDepth * most, kMostDepth * most);
+        h.power = power;
+      }
+      m.spring.sharpness = 0.5 * force * t.overlap / m.spring.energy;
+    }
+    p.stored = m.spring.energy;
+  }
+  for (int n = begin; n < end; ++n) {
+    SolidPair& p = pair(n);
+    if (!(p.touch.overlap > 0)) continue;
+    double all = 0.0;
+    for (int k = begin; k < end; ++k)
+      all += pair(k).stored * std::max(0.0, pair(k).touch.normal.dot(p.touch.normal));
+    Meeting& m = meetings[static_cast<std::size_t>(n - begin)];
+    m.contact.share = p.stored / all;
+    apply_law(p, m, world.constants(m), world.materials.allow_tension(), dt);
+  }
 }
 
 void SolidContacts::compute(const Parts& parts, std::span<const Body> bodies, std::span<const Wall> walls,
-                            const Materials& materials, std::span<const Vec3> velocity,
+                            const Materials& materials, const Domain& domain, std::span<const Vec3> velocity,
                             std::span<const Vec3> spin, double dt) {
-  const auto side_of = [&](int body, const Vec3& point) {
-    const std::size_t n = static_cast<std::size_t>(body);
-    return Side{bodies[n].material, inverse_mass(bodies[n]),
-                velocity[n] + spin[n].cross(point - bodies[n].position), spin[n]};
-  };
-  const auto side_of_ball = [&](int ball, const Vec3& point) {
-    const BallRow& row = parts.row(ball);
-    return Side{static_cast<int>(row.material), row.inverse_mass,
-                row.velocity() + row.spin().cross(point - row.centre()), row.spin()};
-  };
-  const auto compute_pair = [&](SolidPair& pair) {
-    pair.touch = find_touch(pair, parts, bodies, walls);
-    pair.force.setZero();
-    pair.moment.setZero();
-    pair.elastic = pair.wall_power = 0.0;
-    if (!(pair.touch.overlap > 0)) {
-      pair.history = {};
-      return;
-    }
-    const Side a = pair.a.kind == PartKind::ball ? side_of_ball(pair.a.index, pair.touch.point)
-                                                 : side_of(pair.body_a, pair.touch.point);
-    if (pair.body_b >= 0) {
-      apply_law(pair, a, side_of(pair.body_b, pair.touch.point - pair.shift), materials, dt);
-    } else {
-      const Wall& wall = walls[static_cast<std::size_t>(pair.b.index)];
-      apply_law(pair, a, Side{wall.material, 0.0, wall.velocity, Vec3(0, 0, 0)}, materials, dt);
-    }
-  };
+  const World world{parts, bodies, walls, materials, velocity, spin};
   for_each_block(static_cast<int>(pairs_.size()), kBlock, [&](int, int begin, int end) {
-    for (int n = begin; n < end; ++n) compute_pair(pairs_[static_cast<std::size_t>(n)]);
+    for (int n = begin; n < end; ++n) {
+      SolidPair& p = pairs_[static_cast<std::size_t>(n)];
+      p.touch = find_touch(p, parts, bodies, walls, domain);
+      p.hidden = false;
+    }
+  });
+  for_each_block(static_cast<int>(runs_.size()) / 2, kBlock, [&](int, int begin, int end) {
+    for (int n = begin; n < end; ++n)
+      choose(world, runs_[2 * static_cast<std::size_t>(n)], runs_[2 * static_cast<std::size_t>(n) + 1]);
+  });
+  for_each_block(static_cast<int>(first_.size()) - 1, kBlock, [&](int, int begin, int end) {
+    for (int n = begin; n < end; ++n)
+      apply_laws(world, first_[static_cast<std::size_t>(n)], first_[static_cast<std::size_t>(n) + 1], dt);
   });
 }
 
@@ -108,29 +285,32 @@ void SolidContacts::save(std::vector<double>& out) const {
     if (p.history == ContactHistory{}) continue;
     out[head] += 1;
     for (const PartKey& k : {p.a, p.b})
-      for (const int v : {static_cast<int>(k.kind), k.index, k.solid}) out.push_back(v);
-    out.push_back(p.body_a);
-    out.push_back(p.body_b);
+      for (const int v : {static_cast<int>(k.kind), k.index, k.solid, k.image}) out.push_back(v);
     const ContactHistory& h = p.history;
-    out.insert(out.end(), {h.slip.x, h.slip.y, h.slip.z, h.roll.x, h.roll.y, h.roll.z, h.twist});
+    for (const int v : {p.body_a, p.body_b, h.side, h.face}) out.push_back(v);
+    for (const Triple<double>& v : {h.slip, h.roll, h.normal}) out.insert(out.end(), {v.x, v.y, v.z});
+    out.insert(out.end(), {h.twist, h.energy, h.power});
   }
 }
 
 void SolidContacts::load(StateReader& in, int bodies) {
   constexpr int any = std::numeric_limits<int>::max();
-  pairs_.assign(in.count(15), {});
+  pairs_.assign(in.count(24), {});
   for (SolidPair& p : pairs_) {
     for (PartKey* k : {&p.a, &p.b}) {
-      k->kind = static_cast<PartKind>(in.whole(0, static_cast<int>(PartKind::wall_solid)));
-      k->index = in.whole(0, any);
-      k->solid = in.whole(0, any);
+      k->kind = static_cast<PartKind>(in.whole(0, static_cast<int>(PartKind::wall_triangle)));
+      for (int* v : {&k->index, &k->solid, &k->image}) *v = in.whole(0, any);
     }
     p.body_a = in.whole(0, bodies - 1);
     p.body_b = in.whole(-1, bodies - 1);
     ContactHistory& h = p.history;
-    for (double* v : {&h.slip.x, &h.slip.y, &h.slip.z, &h.roll.x, &h.roll.y, &h.roll.z, &h.twist})
-      *v = in.number();
+    h.side = in.whole(-1, 1);
+    h.face = in.whole(-1, any);
+    for (Triple<double>* v : {&h.slip, &h.roll, &h.normal})
+      for (double* c : {&v->x, &v->y, &v->z}) *c = in.number();
+    for (double* v : {&h.twist, &h.energy, &h.power}) *v = in.number();
   }
+  arrange();
 }
 
 }  // namespace ejecta

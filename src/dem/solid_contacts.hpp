@@ -5,18 +5,20 @@
 #include <vector>
 
 #include "base/state_reader.hpp"
+#include "dem/domain.hpp"
 #include "dem/materials.hpp"
 #include "dem/parts.hpp"
 #include "dem/walls.hpp"
 
 namespace ejecta {
 
-enum class PartKind : int { ball, polytope, wall_plane, wall_solid };
+enum class PartKind : int { ball, polytope, wall_plane, wall_solid, wall_region, wall_triangle };
 
-/// One side of a contact: a ball or polytope (index into Parts) or a wall (index), with its solid.
+/// One side of a contact: a ball or polytope (index into Parts) or a wall (index), with its solid, region or
+/// triangle, and which of its images across periodic sides.
 struct PartKey {
   PartKind kind = PartKind::ball;
-  int index = 0, solid = 0;
+  int index = 0, solid = 0, image = 0;
   auto operator<=>(const PartKey&) const = default;
 };
 
@@ -28,15 +30,24 @@ struct Touch {
   Vec3 point{0, 0, 0};        ///< m
   double patch_radius = 0.0;  ///< m, of a flat contact (0: a point)
   double size = 0.0;          ///< m, of the parts: scale of rolling resistance
-  double depth = 0.0;         ///< m, elastic energy over spring force; 0: as the law says
+  double depth = 0.0;         ///< m, of a flat contact: elastic energy over spring force; 0: not known
   double thickness = 0.0;     ///< m, mean, of a flat contact
+  int side = 0;               ///< of a surface on which a is: 1, -1
+  int face = -1;              ///< of a polytope before which a ball is
+  bool on_face = false;       ///< of a triangle: the ball stands on its inside, not on its rim
+  bool ghost = false;         ///< a meets a side that does not touch
 };
 
 /// What changes in time along a contact.
 struct ContactHistory {
   Triple<double> slip, roll;  ///< m, rad
   double twist = 0.0;         ///< rad
+  Triple<double> normal;      ///< at the last step; zero: they did not touch
+  int side = 0, face = -1;    ///< as in Touch
+  double energy = 0.0;        ///< J, that a flat contact has stored, from the work done on its spring
+  double power = 0.0;         ///< W, the rate of that at the last step
   bool operator==(const ContactHistory&) const = default;
+  bool touched() const { return dot(normal, normal) > 0; }
 };
 
 /// A contact in which a polytope or a wall takes part.
@@ -46,6 +57,8 @@ struct SolidPair {
   Vec3 shift{0, 0, 0};          ///< m, from b to the image of it that a meets across a periodic side
   ContactHistory history;
   Touch touch;
+  bool hidden = false;      ///< another contact of the same surface stands for it
+  double stored = 0.0;      ///< J, in the normal spring
   Vec3 force{0, 0, 0};      ///< N, on a
   Vec3 moment{0, 0, 0};     ///< N m, on a besides the force's: rolling and twisting
   double elastic = 0.0;     ///< J
@@ -59,8 +72,8 @@ class SolidContacts {
   void set_pairs(std::vector<SolidPair>& pairs);
   /// `velocity`, `spin`: of the bodies, m/s and rad/s.
   void compute(const Parts& parts, std::span<const Body> bodies, std::span<const Wall> walls,
-               const Materials& materials, std::span<const Vec3> velocity, std::span<const Vec3> spin,
-               double dt);
+               const Materials& materials, const Domain& domain, std::span<const Vec3> velocity,
+               std::span<const Vec3> spin, double dt);
   /// add(body, force, moment, point, touch): each contact's force and moment on each of its bodies, at the
   /// point where that body is, in order.
   template <class Add>
@@ -73,6 +86,10 @@ class SolidContacts {
     }
   }
 
+  /// A ball's friction with a wall (slip and roll, x, y, z each), from where it was a plane to the ball, goes
+  /// to the triangles that it meets now.
+  void hand_over(int ball, int wall, const Vec3& normal, const std::array<double, 6>& friction);
+
   std::span<const SolidPair> pairs() const { return pairs_; }
   double elastic() const;
   double wall_power() const;
@@ -82,14 +99,25 @@ class SolidContacts {
   template <class Rename>
   void rename(const Rename& rename) {
     std::erase_if(pairs_, [&](SolidPair& p) { return !rename(p); });
+    arrange();
   }
 
  private:
+  struct World;
+  void arrange();
+  void choose(const World& world, int begin, int end);
+  void apply_laws(const World& world, int begin, int end, double dt);
+
   std::vector<SolidPair> pairs_;
+  std::vector<int> runs_;           // where those of a ball with one body or wall begin and end, in turn
+  std::vector<int> order_, first_;  // pairs by the two bodies (all walls are one), and where each two begin
 };
 
-/// How two parts touch.
+/// How two parts touch by themselves, whatever else the bodies they belong to touch.
 Touch find_touch(const SolidPair& pair, const Parts& parts, std::span<const Body> bodies,
-                 std::span<const Wall> walls);
+                 std::span<const Wall> walls, const Domain& domain);
+/// How far b, of which a pair tells, lies from a point, m.
+double distance_to(const SolidPair& pair, const Vec3& point, const Parts& parts, std::span<const Body> bodies,
+                   std::span<const Wall> walls);
 
 }  // namespace ejecta

@@ -39,7 +39,7 @@ bool Particles::place_is_free(std::size_t n) const {
     const double apart = radius + bodies_[k].shape.bounding_radius();
     if (domain_.nearest(bodies_[k].position - b.position).squaredNorm() < apart * apart) return false;
   }
-  return true;
+  return !(deepest_in_walls(n).overlap > 0);
 }
 
 void Particles::show(std::size_t n, Presence presence) {

@@ -6,11 +6,14 @@
 #include <filesystem>
 
 #include "base/error.hpp"
-#include "shape/shape.hpp"
+#include "shape/convex_parts.hpp"
+#include "shape/mass_properties.hpp"
 #include "shape/stl.hpp"
 
 namespace ejecta {
 namespace {
+
+constexpr double kSameVolume = 1e-5;  // what the 32-bit corners of an STL file may take or add
 
 void require_size(const Vec3& size) {
   if (!(size.minCoeff() > 0) || !size.allFinite())
@@ -28,21 +31,16 @@ Polytope slab(const Vec3& point, const Vec3& normal, const Vec3& size) {
   return moved(polytope_box(0.5 * size), axes, point - 0.5 * size.z() * normal);
 }
 
-/// Prisms that reach `thickness` behind each triangle: flat parts act as one, however they are divided.
-std::vector<Polytope> prisms(const TriangleMesh& mesh, double thickness, const std::string& name) {
-  std::vector<Polytope> solids;
+void require_area(const TriangleMesh& mesh, const std::string& name) {
   for (std::size_t n = 0; n < mesh.triangles.size(); ++n) {
-    std::vector<Vec3> corners;
-    for (const int c : mesh.triangles[n]) corners.push_back(mesh.vertices[static_cast<std::size_t>(c)]);
-    const Vec3 up = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
-    const double longest = std::max({(corners[1] - corners[0]).norm(), (corners[2] - corners[0]).norm(),
-                                     (corners[2] - corners[1]).norm()});
-    if (!(up.norm() > 1e-12 * longest * longest))
+    const auto corner = [&](std::size_t c) -> const Vec3& {
+      return mesh.vertices[static_cast<std::size_t>(mesh.triangles[n][c])];
+    };
+    const Vec3 a = corner(1) - corner(0), b = corner(2) - corner(0);
+    const double longest = std::max({a.norm(), b.norm(), (a - b).norm()});
+    if (!(a.cross(b).norm() > 1e-12 * longest * longest))
       throw InputError(fmt::format("{}: triangle {} is degenerate (no area)", name, n + 1));
-    for (std::size_t c = 0; c < 3; ++c) corners.push_back(corners[c] - thickness * up.normalized());
-    solids.push_back(convex_hull(corners));
   }
-  return solids;
 }
 
 }  // namespace
@@ -63,16 +61,21 @@ Wall make_wall(const WallSpec& spec, const Materials& materials, const std::stri
     wall.is_plane = false;
     if (spec.kind == WallKind::mesh) {
       const std::string path = (std::filesystem::path(directory) / spec.file).string();
-      const double thickness = spec.size.z() > 0 ? spec.size.z() : 1e-3;
       const TriangleMesh mesh = read_stl(path, 1.0);
-      wall.solids = prisms(mesh, thickness, path);
-      wall.facets = make_facets(mesh, thickness);
+      require_area(mesh, path);
+      wall.surface = std::make_shared<Surface>(mesh, spec.two_sided);
+      if (const double volume = mass_mesh(mesh).volume; wall.surface->closed() && volume > 0) {
+        wall.solids = convex_pieces(mesh);
+        if (std::abs(volume_polytopes(wall.solids) - volume) > kSameVolume * volume) wall.solids.clear();
+        find_seams(wall.solids);
+      }
       return wall;
     }
     require_size(spec.size);
     wall.solids = {spec.kind == WallKind::box
                        ? moved(polytope_box(0.5 * spec.size), Mat3::Identity(), spec.point)
                        : slab(spec.point, wall.normal, spec.size)};
+    wall.surface = std::make_shared<Surface>(triangles_of(wall.solids.front()));
     return wall;
   } catch (const InputError& e) {
     throw InputError(fmt::format("wall \"{}\": {}", spec.name, e.what()));

@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numeric>
 #include <set>
 #include <utility>
 
 #include "base/error.hpp"
+#include "shape/farthest.hpp"
 #include "shape/polytope.hpp"
 
 namespace ejecta {
@@ -32,18 +34,32 @@ bool is_above(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
 
 struct Triangle {
   std::array<int, 3> corners;
-  Vec3 normal;  // outward; its length is twice the area
+  Vec3 normal;                            // outward; its length is twice the area
+  std::array<int, 3> beyond{-1, -1, -1};  // the triangle across the edge from each corner to the next
+  std::vector<int> above{};               // points that see it and wait to be added
+  bool gone = false;
 };
 
 struct Hull {
   const std::vector<Vec3>& points;
   double tolerance;
-  std::vector<Triangle> triangles;
+  std::vector<Triangle> triangles{};
+  std::vector<int> starts{};  // of a point on the rim of what is taken away: the new triangle from it
 
   const Vec3& at(int n) const { return points[static_cast<std::size_t>(n)]; }
+  Triangle& triangle(int n) { return triangles[static_cast<std::size_t>(n)]; }
   void add(int a, int b, int c) { triangles.push_back({{a, b, c}, (at(b) - at(a)).cross(at(c) - at(a))}); }
   bool sees(int point, const Triangle& t) const {
     return is_above(at(t.corners[0]), at(t.corners[1]), at(t.corners[2]), at(point));
+  }
+  /// Each point waits at the first of the triangles from `first` on that it sees; the others lie inside.
+  void deal_out(const std::vector<int>& waiting, int first) {
+    for (const int p : waiting)
+      for (int t = first; t < static_cast<int>(triangles.size()); ++t)
+        if (sees(p, triangle(t))) {
+          triangle(t).above.push_back(p);
+          break;
+        }
   }
 };
 
@@ -72,25 +88,52 @@ void first_tetrahedron(Hull& hull) {
     above ? hull.add(p, r, q) : hull.add(p, q, r);
 }
 
-/// Replaces the triangles that `point` sees by a fan from it to their rim.
-void add_point(Hull& hull, int point) {
-  if (std::none_of(hull.triangles.begin(), hull.triangles.end(),
-                   [&](const Triangle& t) { return hull.sees(point, t); }))
-    return;
-  std::set<std::pair<int, int>> rim;
-  std::vector<Triangle> kept;
-  for (const Triangle& t : hull.triangles) {
-    if (!hull.sees(point, t)) {
-      kept.push_back(t);
-      continue;
-    }
+/// Replaces the triangles that the farthest of the points above triangle `n` sees by a fan from it to their
+/// rim (Barber, Dobkin & Huhdanpaa 1996, ACM Trans. Math. Softw. 22:469).
+void add_point(Hull& hull, int n) {
+  const Triangle& base = hull.triangle(n);
+  const auto height = [&](int p) { return base.normal.dot(hull.at(p) - hull.at(base.corners[0])); };
+  const int point = *std::max_element(base.above.begin(), base.above.end(),
+                                      [&](int p, int q) { return height(p) < height(q); });
+  std::vector<int> seen{n}, waiting;
+  struct Edge {
+    int from, to, outer;
+  };
+  std::vector<Edge> rim;
+  hull.triangle(n).gone = true;
+  for (std::size_t k = 0; k < seen.size(); ++k)
     for (std::size_t c = 0; c < 3; ++c) {
-      const int from = t.corners[c], to = t.corners[(c + 1) % 3];
-      if (!rim.erase({to, from})) rim.insert({from, to});
+      const int next = hull.triangle(seen[k]).beyond[c];
+      if (!hull.triangle(next).gone && hull.sees(point, hull.triangle(next))) {
+        hull.triangle(next).gone = true;
+        seen.push_back(next);
+      }
     }
+  for (const int t : seen) {
+    Triangle& old = hull.triangle(t);
+    for (std::size_t c = 0; c < 3; ++c)
+      if (!hull.triangle(old.beyond[c]).gone)
+        rim.push_back({old.corners[c], old.corners[(c + 1) % 3], old.beyond[c]});
+    for (const int p : old.above)
+      if (p != point) waiting.push_back(p);
+    old.above = {};
   }
-  hull.triangles = std::move(kept);
-  for (const auto& [from, to] : rim) hull.add(from, to, point);
+  const int first = static_cast<int>(hull.triangles.size());
+  for (const Edge& e : rim) {
+    const int fresh = static_cast<int>(hull.triangles.size());
+    hull.starts[static_cast<std::size_t>(e.from)] = fresh;
+    hull.add(e.from, e.to, point);
+    Triangle& outer = hull.triangle(e.outer);
+    for (std::size_t c = 0; c < 3; ++c)
+      if (outer.corners[c] == e.to && outer.corners[(c + 1) % 3] == e.from) outer.beyond[c] = fresh;
+    hull.triangle(fresh).beyond[0] = e.outer;
+  }
+  for (int t = first; t < static_cast<int>(hull.triangles.size()); ++t) {
+    const int next = hull.starts[static_cast<std::size_t>(hull.triangle(t).corners[1])];
+    hull.triangle(t).beyond[1] = next;
+    hull.triangle(next).beyond[2] = t;
+  }
+  hull.deal_out(waiting, first);
 }
 
 using Rim = std::set<std::pair<int, int>>;
@@ -113,35 +156,43 @@ std::vector<int> walk(const Rim& rim) {
 /// Triangles of one plane joined to a face, where they have one rim. The largest give the planes: the normal
 /// of a sliver is mostly round-off.
 Polytope merge_faces(Hull& hull) {
-  std::stable_sort(hull.triangles.begin(), hull.triangles.end(), [](const Triangle& a, const Triangle& b) {
-    return a.normal.squaredNorm() > b.normal.squaredNorm();
+  std::vector<int> largest;
+  for (int n = 0; n < static_cast<int>(hull.triangles.size()); ++n)
+    if (!hull.triangle(n).gone) largest.push_back(n);
+  std::stable_sort(largest.begin(), largest.end(), [&](int a, int b) {
+    return hull.triangle(a).normal.squaredNorm() > hull.triangle(b).normal.squaredNorm();
   });
   Polytope result;
   std::map<int, int> renamed;
   std::vector<bool> used(hull.triangles.size(), false);
-  for (std::size_t n = 0; n < hull.triangles.size(); ++n) {
-    if (used[n]) continue;
-    const Triangle& own = hull.triangles[n];
+  for (const int n : largest) {
+    if (used[static_cast<std::size_t>(n)]) continue;
+    const Triangle& own = hull.triangle(n);
     const Vec3 normal = own.normal.normalized();
     const double offset = normal.dot(hull.at(own.corners[0]));
-    std::vector<std::size_t> group;
+    std::vector<int> group{n};
+    used[static_cast<std::size_t>(n)] = true;
     Rim rim;
-    for (std::size_t m = n; m < hull.triangles.size(); ++m) {
-      const auto& t = hull.triangles[m].corners;
-      const bool same = std::all_of(t.begin(), t.end(), [&](int p) {
-        return std::abs(normal.dot(hull.at(p)) - offset) <= 2 * hull.tolerance;
-      });
-      if (used[m] || !same) continue;
-      group.push_back(m);
-      for (std::size_t c = 0; c < 3; ++c)
-        if (!rim.erase({t[(c + 1) % 3], t[c]})) rim.insert({t[c], t[(c + 1) % 3]});
+    for (std::size_t k = 0; k < group.size(); ++k) {
+      const Triangle& t = hull.triangle(group[k]);
+      for (std::size_t c = 0; c < 3; ++c) {
+        const int from = t.corners[c], to = t.corners[(c + 1) % 3];
+        if (!rim.erase({to, from})) rim.insert({from, to});
+        const std::size_t next = static_cast<std::size_t>(t.beyond[c]);
+        const auto& corners = hull.triangles[next].corners;
+        if (used[next] || !std::all_of(corners.begin(), corners.end(), [&](int p) {
+              return std::abs(normal.dot(hull.at(p)) - offset) <= 2 * hull.tolerance;
+            }))
+          continue;
+        used[next] = true;
+        group.push_back(static_cast<int>(next));
+      }
     }
     std::vector<int> corners = walk(rim);
     if (corners.empty()) {  // round-off has torn the plane: leave its triangles as they are
       corners.assign(own.corners.begin(), own.corners.end());
-      group = {n};
+      for (const int m : group) used[static_cast<std::size_t>(m)] = m == n;
     }
-    for (const std::size_t m : group) used[m] = true;
     result.faces.push_back(
         {normal, offset, static_cast<int>(result.corners.size()), static_cast<int>(corners.size())});
     for (const int corner : corners) {
@@ -164,15 +215,27 @@ Polytope convex_hull(const std::vector<Vec3>& points) {
     low = low.cwiseMin(p);
     high = high.cwiseMax(p);
   }
-  Hull hull{points, kCoplanar * (high - low).norm(), {}};
+  Hull hull{points, kCoplanar * (high - low).norm()};
   first_tetrahedron(hull);
-  for (int n = 0; n < static_cast<int>(points.size()); ++n) add_point(hull, n);
+  for (int t = 0; t < 4; ++t)
+    for (std::size_t c = 0; c < 3; ++c)
+      for (int other = 0; other < 4; ++other)
+        for (std::size_t d = 0; d < 3; ++d)
+          if (hull.triangle(t).corners[c] == hull.triangle(other).corners[(d + 1) % 3] &&
+              hull.triangle(t).corners[(c + 1) % 3] == hull.triangle(other).corners[d])
+            hull.triangle(t).beyond[c] = other;
+  hull.starts.resize(points.size());
+  std::vector<int> all(points.size());
+  std::iota(all.begin(), all.end(), 0);
+  hull.deal_out(all, 0);
+  for (int n = 0; n < static_cast<int>(hull.triangles.size()); ++n)
+    if (!hull.triangle(n).above.empty()) add_point(hull, n);
   Polytope result = merge_faces(hull);
   result.centre = 0.5 * (low + high);
   for (const Vec3& v : result.vertices) result.radius = std::max(result.radius, (v - result.centre).norm());
+  const Farthest farthest(result.vertices);
   for (const Polytope::Face& f : result.faces)
-    if (!f.normal.allFinite() ||
-        f.normal.dot(support_polytope(result, f.normal)) > f.offset + 1e-6 * result.radius)
+    if (!f.normal.allFinite() || farthest.along(f.normal) > f.offset + 1e-6 * result.radius)
       throw InputError("the points are too nearly in a plane or line to span a solid");
   return result;
 }

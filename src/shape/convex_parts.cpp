@@ -48,26 +48,33 @@ bool same_plane(const Plane& a, const Plane& b, double tolerance) {
 /// Which faces of the hull lie in a cut. They hide no hollow: another piece lies behind them.
 std::vector<bool> hull_cuts(const Piece& piece, double tolerance) {
   std::vector<bool> cuts;
+  std::vector<Plane> planes;
+  for (const FacetedSolid::Face& f : piece.solid.faces)
+    if (f.from_cut) planes.push_back(f.plane);
   for (const Polytope::Face& h : piece.hull.faces)
-    cuts.push_back(
-        std::any_of(piece.solid.faces.begin(), piece.solid.faces.end(), [&](const FacetedSolid::Face& f) {
-          return f.from_cut && same_plane(f.plane, {h.normal, h.offset}, tolerance);
-        }));
+    cuts.push_back(std::any_of(planes.begin(), planes.end(), [&](const Plane& p) {
+      return same_plane(p, {h.normal, h.offset}, tolerance);
+    }));
   return cuts;
 }
 
 /// How deep all of the face lies below one face of the hull: nowhere on it is deeper below the hull.
+/// `nearest`: the face of the hull to look at first, as the last was near the one before.
 double depth_below(const FacetedSolid::Face& face, const Polytope& hull, const std::vector<bool>& cuts,
-                   double tolerance) {
+                   double tolerance, std::size_t& nearest) {
   double least = 2 * hull.radius;
-  for (std::size_t n = 0; n < hull.faces.size(); ++n) {
+  const std::size_t count = hull.faces.size(), first = nearest;
+  for (std::size_t k = 0; k <= count; ++k) {
+    const std::size_t n = k == 0 ? first : k - 1;
     const Polytope::Face& h = hull.faces[n];
     double deepest = 0.0;
     for (const auto& edge : face.edges) {
       deepest = std::max(deepest, h.offset - h.normal.dot(edge.from));
       if (deepest >= least) break;
     }
-    if (!cuts[n] || deepest <= 10 * tolerance) least = std::min(least, deepest);
+    if (deepest >= least || (cuts[n] && deepest > 10 * tolerance)) continue;
+    least = deepest;
+    nearest = n;
   }
   return least;
 }
@@ -75,9 +82,10 @@ double depth_below(const FacetedSolid::Face& face, const Polytope& hull, const s
 void find_hollows(Piece& piece, double error, double tolerance) {
   const std::vector<bool> cuts = hull_cuts(piece, tolerance);
   std::vector<std::pair<double, std::size_t>> deep;
+  std::size_t nearest = 0;
   for (std::size_t n = 0; n < piece.solid.faces.size(); ++n) {
     const FacetedSolid::Face& face = piece.solid.faces[n];
-    const double depth = face.from_cut ? 0.0 : depth_below(face, piece.hull, cuts, tolerance);
+    const double depth = face.from_cut ? 0.0 : depth_below(face, piece.hull, cuts, tolerance, nearest);
     piece.hollow = std::max(piece.hollow, depth);
     if (depth > error) deep.emplace_back(-depth, n);
   }

@@ -16,4 +16,8 @@ namespace ejecta {
 /// that would take more than 100 parts, with an error that does not.
 std::vector<Polytope> convex_parts(const TriangleMesh& mesh, double error, const std::string& name);
 
+/// The hulls of the pieces of a closed mesh, each of which hangs together, if all their corners lie on them;
+/// else nothing. (A hole through a piece can leave all corners on the hull: its volume tells.)
+std::vector<Polytope> convex_pieces(const TriangleMesh& mesh);
+
 }  // namespace ejecta

@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <numeric>
 
 #include "base/error.hpp"
 #include "shape/convex_parts.hpp"
@@ -13,46 +12,6 @@ namespace ejecta {
 namespace {
 
 constexpr double kRound = 1e-5;  // of the volume: what the 32-bit corners of an STL file may take or add
-
-/// Vertices of each piece of the mesh that hangs together.
-std::vector<std::vector<int>> pieces_of(const TriangleMesh& mesh) {
-  std::vector<int> parent(mesh.vertices.size());
-  std::iota(parent.begin(), parent.end(), 0);
-  const auto top = [&](int v) {
-    while (parent[static_cast<std::size_t>(v)] != v) v = parent[static_cast<std::size_t>(v)];
-    return v;
-  };
-  for (const auto& t : mesh.triangles)
-    for (const int c : {t[1], t[2]}) {
-      const int a = top(t[0]), b = top(c);
-      parent[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
-    }
-  std::vector<std::vector<int>> pieces(mesh.vertices.size());
-  for (const auto& t : mesh.triangles)
-    for (const int c : t) pieces[static_cast<std::size_t>(top(c))].push_back(c);
-  std::erase_if(pieces, [](const auto& p) { return p.empty(); });
-  for (auto& p : pieces) {
-    std::sort(p.begin(), p.end());
-    p.erase(std::unique(p.begin(), p.end()), p.end());
-  }
-  return pieces;
-}
-
-/// The hulls of pieces that are convex; nothing if one of them is not.
-std::vector<Polytope> hulls_of(const TriangleMesh& mesh, const std::vector<std::vector<int>>& pieces) {
-  std::vector<Polytope> hulls;
-  for (const auto& piece : pieces) {
-    std::vector<Vec3> points;
-    for (const int v : piece) points.push_back(mesh.vertices[static_cast<std::size_t>(v)]);
-    hulls.push_back(convex_hull(points));
-    const Polytope& hull = hulls.back();
-    const bool convex = std::all_of(points.begin(), points.end(), [&](const Vec3& p) {
-      return -nearest_on_polytope(hull, p).distance <= 1e-6 * hull.radius;
-    });
-    if (!convex) return {};
-  }
-  return hulls;
-}
 
 /// Parts that share space would be counted twice. (That no corner of one lies inside another is not all that
 /// could be asked, but what happens.)
@@ -78,6 +37,7 @@ Shape make_polytope_shape(std::vector<Polytope> parts, TriangleMesh surface, con
   data->frame = to_principal_axes(data->mass);
   const Mat3 turn = data->frame.rotation.conjugate().toRotationMatrix();
   for (Polytope& p : parts) p = moved(p, turn, -(turn * data->frame.centre));
+  find_seams(parts);
   for (Vec3& v : surface.vertices) {
     v = to_body(data->frame, v);
     data->bounding_radius = std::max(data->bounding_radius, v.norm());
@@ -102,7 +62,7 @@ Shape make_polyhedron(const std::vector<Vec3>& points) {
 Shape make_mesh(const TriangleMesh& mesh, const std::string& name, double fit_error) {
   require_closed(mesh, name);
   const MassProperties mass = mass_mesh(mesh);
-  std::vector<Polytope> parts = hulls_of(mesh, pieces_of(mesh));
+  std::vector<Polytope> parts = convex_pieces(mesh);
   // A hole through a piece leaves all of its corners on the hull: its volume tells.
   if (!parts.empty() && volume_polytopes(parts) <= (1 + kRound) * mass.volume) {
     require_disjoint(parts, name);

@@ -5,10 +5,25 @@
 #include <limits>
 #include <numeric>
 
+#include "shape/farthest.hpp"
 #include "shape/mass_properties.hpp"
 
 namespace ejecta {
 namespace {
+
+constexpr double kSeam = 1e-6;  // of the size: parts that are nearer lie on each other
+
+/// The part of a convex polygon within normal . x < offset.
+std::vector<Vec3> cut_polygon(const std::vector<Vec3>& polygon, const Vec3& normal, double offset) {
+  std::vector<Vec3> kept;
+  for (std::size_t n = 0; n < polygon.size(); ++n) {
+    const Vec3 &a = polygon[n], &b = polygon[(n + 1) % polygon.size()];
+    const double h = normal.dot(a) - offset, g = normal.dot(b) - offset;
+    if (h < 0) kept.push_back(a);
+    if ((h < 0) != (g < 0)) kept.push_back(a + h / (h - g) * (b - a));
+  }
+  return kept;
+}
 
 const Vec3& corner(const Polytope& p, const Polytope::Face& f, int n) {
   return p.vertices[static_cast<std::size_t>(p.corners[static_cast<std::size_t>(f.first + n)])];
@@ -30,12 +45,40 @@ Polytope polytope_box(const Vec3& half) {
 Polytope moved(const Polytope& p, const Mat3& rotation, const Vec3& translation) {
   Polytope q = p;
   for (Vec3& v : q.vertices) v = rotation * v + translation;
-  for (Polytope::Face& f : q.faces) {
-    f.normal = rotation * f.normal;
-    f.offset += f.normal.dot(translation);
-  }
+  for (auto* faces : {&q.faces, &q.seams})
+    for (Polytope::Face& f : *faces) {
+      f.normal = rotation * f.normal;
+      f.offset += f.normal.dot(translation);
+    }
   q.centre = rotation * p.centre + translation;
   return q;
+}
+
+void find_seams(std::vector<Polytope>& parts) {
+  for (std::size_t n = 0; n < parts.size(); ++n)
+    for (std::size_t m = 0; m < parts.size(); ++m) {
+      Polytope& p = parts[n];
+      const Polytope& q = parts[m];
+      const double slack = kSeam * (p.radius + q.radius);
+      if (n == m || (p.centre - q.centre).norm() > p.radius + q.radius + slack) continue;
+      const Farthest farthest(q.vertices);
+      for (const Polytope::Face& f : p.faces) {
+        const double nearest = -farthest.along(-f.normal);
+        if (std::abs(nearest - f.offset) > slack) continue;
+        std::vector<Vec3> shared;
+        for (int c = 0; c < f.count; ++c) shared.push_back(corner(p, f, c));
+        for (const Polytope::Face& g : q.faces)
+          if (g.normal.dot(f.normal) > -0.99) shared = cut_polygon(shared, g.normal, g.offset);
+        if (shared.size() < 3) continue;
+        p.seams.push_back(f);
+        p.seams.back().first = static_cast<int>(p.corners.size());
+        p.seams.back().count = static_cast<int>(shared.size());
+        for (const Vec3& v : shared) {
+          p.corners.push_back(static_cast<int>(p.vertices.size()));
+          p.vertices.push_back(v);
+        }
+      }
+    }
 }
 
 TriangleMesh triangles_of(const Polytope& p) {
@@ -70,9 +113,9 @@ TrianglePoint nearest_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b, c
 
 NearestPoint nearest_on_polytope(const Polytope& p, const Vec3& point) {
   NearestPoint inside{-std::numeric_limits<double>::infinity(), Vec3::UnitZ()};
-  for (const Polytope::Face& f : p.faces) {
-    const double d = f.normal.dot(point) - f.offset;
-    if (d > inside.distance) inside = {d, f.normal};
+  for (std::size_t n = 0; n < p.faces.size(); ++n) {
+    const double d = p.faces[n].normal.dot(point) - p.faces[n].offset;
+    if (d > inside.distance) inside = {d, p.faces[n].normal, static_cast<int>(n)};
   }
   if (inside.distance <= 0) return inside;
   Vec3 nearest = point;
@@ -90,7 +133,7 @@ NearestPoint nearest_on_polytope(const Polytope& p, const Vec3& point) {
     }
   }
   const double distance = std::sqrt(best);
-  return {distance, distance > 0 ? Vec3((point - nearest) / distance) : inside.normal};
+  return {distance, distance > 0 ? Vec3((point - nearest) / distance) : inside.normal, inside.face};
 }
 
 Vec3 support_polytope(const Polytope& p, const Vec3& direction) {
@@ -107,8 +150,8 @@ double volume_polytopes(std::span<const Polytope> parts) {
 
 double width_polytope(const Polytope& p) {
   double width = std::numeric_limits<double>::infinity();
-  for (const Polytope::Face& f : p.faces)
-    width = std::min(width, f.offset - f.normal.dot(support_polytope(p, -f.normal)));
+  const Farthest farthest(p.vertices);
+  for (const Polytope::Face& f : p.faces) width = std::min(width, f.offset + farthest.along(-f.normal));
   return width;
 }
 

@@ -7,6 +7,11 @@
 
 namespace ejecta {
 
+struct HalfSpace {
+  Vec3 normal{0, 0, 1};  ///< unit, outward
+  double offset = 0.0;   ///< m, normal . x < offset inside
+};
+
 /// A convex solid bounded by flat faces. Lengths in m.
 struct Polytope {
   struct Face {
@@ -16,7 +21,8 @@ struct Polytope {
   };
   std::vector<Vec3> vertices;
   std::vector<Face> faces;
-  std::vector<int> corners;  ///< indices of vertices, face after face
+  std::vector<Face> seams;   ///< the parts of its faces behind which another part of the same solid goes on
+  std::vector<int> corners;  ///< indices of vertices, face after face; seams last
   Vec3 centre{0, 0, 0};      ///< of a sphere that holds it
   double radius = 0.0;       ///< of that sphere
 };
@@ -27,6 +33,8 @@ Polytope convex_hull(const std::vector<Vec3>& points);
 Polytope polytope_box(const Vec3& half);
 /// The polytope moved to other axes: p -> rotation * p + translation.
 Polytope moved(const Polytope& p, const Mat3& rotation, const Vec3& translation);
+/// Notes where convex parts of one solid, which share no space, lie on each other.
+void find_seams(std::vector<Polytope>& parts);
 /// Fan triangles of its faces.
 TriangleMesh triangles_of(const Polytope& p);
 
@@ -41,6 +49,7 @@ TrianglePoint nearest_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b, c
 struct NearestPoint {
   double distance = 0.0;  ///< signed, m
   Vec3 normal{0, 0, 1};   ///< unit, outward
+  int face = 0;           ///< whose plane the point lies farthest before (or least behind)
 };
 /// Exact signed distance of a point and its gradient.
 NearestPoint nearest_on_polytope(const Polytope& p, const Vec3& point);

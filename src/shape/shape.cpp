@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "shape/farthest.hpp"
 #include "shape/polytope.hpp"
 #include "shape/primitives.hpp"
 #include "shape/shape_data.hpp"
@@ -98,8 +99,9 @@ std::vector<Width> Shape::widths() const {
   for (const Polytope& p : polytopes()) {
     if (volume_polytope(p) <= kCrumb * largest) continue;
     const std::size_t first = list.size();
+    const Farthest farthest(p.vertices);
     for (const Polytope::Face& f : p.faces) {
-      const double size = f.offset - f.normal.dot(support_polytope(p, -f.normal));
+      const double size = f.offset + farthest.along(-f.normal);
       const bool known =
           std::any_of(list.begin() + static_cast<std::ptrdiff_t>(first), list.end(), [&](const Width& w) {
             return std::abs(w.direction.dot(f.normal)) > 1 - 1e-12 && w.size <= size * (1 + 1e-9);

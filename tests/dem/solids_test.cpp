@@ -88,7 +88,8 @@ TEST(Rock, ElasticDropKeepsItsEnergy) {
 }
 
 /// The paper's 27 spheres with the mass of the box they stand for, on the same drop on a corner: they touch
-/// later, are stiffer at first touch than a sharp corner and are pushed less hard at the end.
+/// later, are stiffer than a sharp corner and so are pushed harder (without damping 3.3 N by Hertz's law, the
+/// corner 4 E/h = 1.8 N).
 TEST(Cube, ClusterAndBoxOnACornerDiffer) {
   Case c = on_floor(0.3, 0.5);
   const BodySpec solid = turned(box("box", Vec3::Constant(kEdge), Vec3(0, 0, 40e-3)), Vec3(1, -1, 0),
@@ -111,7 +112,7 @@ TEST(Cube, ClusterAndBoxOnACornerDiffer) {
   EXPECT_LT(lowest[0], std::sqrt(3.0) * 5e-3);
   EXPECT_LT(lowest[1], 2.5e-3 * (std::sqrt(3.0) + 1));
   EXPECT_GT(lowest[0] - lowest[1], 0.5e-3);
-  EXPECT_GT(p.peaks(0).force, 1.5 * p.peaks(1).force);
+  EXPECT_GT(p.peaks(1).force, 1.5 * p.peaks(0).force);
 }
 
 double slide(double degrees) {

@@ -1,0 +1,152 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <string_view>
+
+#include "dem/surface.hpp"
+#include "surface_scenes.hpp"
+
+/// The restitution asked for, of every shape on every surface and on each other, centrally.
+namespace ejecta {
+namespace {
+
+constexpr double kSize = 10e-3, kSpeed = 0.5;  // m, m/s
+
+struct Kind {
+  const char* name;
+  Shape shape;
+  Quat turn = Quat::Identity();  // the side with which it goes first
+};
+
+Quat between(const Vec3& from, const Vec3& to) { return Quat::FromTwoVectors(from, to); }
+
+std::vector<Kind> kinds() {
+  const Vec3 down(0, 0, -1);
+  const Shape box = make_box(Vec3::Constant(kSize));
+  std::vector<Kind> all{{"sphere", make_sphere(kSize)},
+                        {"cluster of 27", make_cluster(Vec3::Constant(kSize), {3, 3, 3}, 0.5 * kSize)},
+                        {"box on face", box},
+                        {"box on edge", box, between(Vec3(1, 0, 1), down)},
+                        {"box on corner", box, between(Vec3(1, 1, 1), down)},
+                        {"superquadric", make_superquadric(kSize * Vec3(1, 0.9, 0.8), 2, 2)},
+                        {"superquadric, blunt", make_superquadric(kSize * Vec3(1, 1, 1), 5, 5)}};
+  for (const int level : {0, 2, 4}) {
+    TriangleMesh mesh = icosphere(level);
+    for (Vec3& v : mesh.vertices) v *= 0.5 * kSize;
+    all.push_back({level == 0   ? "mesh of 20"
+                   : level == 2 ? "mesh of 320"
+                                : "mesh of 5120",
+                   make_mesh(mesh, "ico"), level == 0 ? between(mesh.vertices[0], down) : Quat::Identity()});
+  }
+  for (const int legs : {2, 4}) {
+    const Shape table = make_mesh(table_mesh(legs, kSize), "table");
+    all.push_back({legs == 2 ? "table of 4 legs" : "table of 16 legs", table, table.frame().rotation});
+  }
+  return all;
+}
+
+Case elastic(double restitution) {
+  MaterialSpec m = stone();
+  m.restitution = restitution;
+  m.friction = 0.0;
+  return scene(m);
+}
+
+Body thrown(const Kind& kind, const Materials& materials, double z, double speed, bool upside_down) {
+  Body b = body_of(kind.name, kind.shape, materials);
+  b.orientation = kind.turn;
+  if (upside_down) b.orientation = Quat(Eigen::AngleAxisd(M_PI, Vec3::UnitX())) * b.orientation;
+  b.position = Vec3(0, 0, z);
+  b.velocity = Vec3(0, 0, speed);
+  return b;
+}
+
+double lowest(const Body& b) {
+  return b.position.z() + (b.orientation * b.shape.support(b.orientation.conjugate() * Vec3(0, 0, -1))).z();
+}
+double highest(const Body& b) {
+  return b.position.z() + (b.orientation * b.shape.support(b.orientation.conjugate() * Vec3(0, 0, 1))).z();
+}
+
+/// Until they part.
+void collide(Particles& p) {
+  bool met = false;
+  for (int n = 0; n < 400; ++n) {
+    p.advance(2e-4);
+    const bool touching = !p.contacts().empty();
+    if (met && !touching) return;
+    met = met || touching;
+  }
+}
+
+bool finest(const Kind& kind) { return std::string_view(kind.name) == "mesh of 5120"; }
+
+TEST(Restitution, OfEveryShapeOnEverySurface) {
+  for (const double e : {0.1, 0.5, 0.9}) {
+    const Case c = elastic(e);
+    const Materials materials(c);
+    std::vector<std::pair<std::string, Wall>> walls;
+    WallSpec spec = floor_at(0);
+    walls.emplace_back("plane", make_wall(spec, materials, ""));
+    spec.kind = WallKind::box;
+    spec.point = Vec3(0, 0, -20e-3);
+    spec.size = Vec3(60e-3, 60e-3, 40e-3);
+    walls.emplace_back("box", make_wall(spec, materials, ""));
+    spec.kind = WallKind::plate;
+    spec.point.setZero();
+    spec.size = Vec3(60e-3, 60e-3, 2e-3);
+    walls.emplace_back("plate", make_wall(spec, materials, ""));
+    for (const int n : {1, 2, 7, 40})
+      walls.emplace_back("divided " + std::to_string(n), wall_of(flat_mesh(n, 31e-3)));
+    walls.emplace_back("block", wall_of(moved(block_mesh(Vec3(30e-3, 30e-3, 10e-3), 3), Mat3::Identity(),
+                                              Vec3(0, 0, -10e-3))));
+    for (const Kind& kind : kinds())
+      for (const auto& [name, wall] : walls) {
+        if (finest(kind) && (e != 0.5 || (name != "plane" && name != "divided 7"))) continue;
+        Particles p(Vec3(0, 0, 0), materials, c.contact);
+        p.add(wall);
+        Body b = thrown(kind, materials, 0.0, -kSpeed, false);
+        b.position.z() = 1e-5 - lowest(b);
+        p.add(b);
+        collide(p);
+        EXPECT_NEAR(p.bodies()[0].velocity.z() / kSpeed, e, 0.02) << kind.name << " on " << name;
+      }
+  }
+}
+
+/// A corner of three or five edges on an edge, or between four legs, is pushed to the side: no central
+/// impact.
+bool lopsided(const Kind& a, const Kind& b) {
+  const std::string_view odd = a.name, even = b.name;
+  return (odd == "box on corner" || odd == "mesh of 20") &&
+         (even == "box on edge" || even.starts_with("table"));
+}
+
+/// All three and the finest mesh: EJECTA_ALL_PAIRS=1.
+TEST(Restitution, OfEveryShapeOnEachOther) {
+  std::vector<Kind> all = kinds();
+  const bool every = std::getenv("EJECTA_ALL_PAIRS") != nullptr;
+  if (!every) std::erase_if(all, finest);
+  for (const double e : every ? std::vector{0.1, 0.5, 0.9} : std::vector{0.5}) {
+    const Case c = elastic(e);
+    const Materials materials(c);
+    for (std::size_t i = 0; i < all.size(); ++i)
+      for (std::size_t j = i; j < all.size(); ++j) {
+        if (lopsided(all[i], all[j]) || lopsided(all[j], all[i])) continue;
+        Particles p(Vec3(0, 0, 0), materials, c.contact);
+        Body low = thrown(all[i], materials, 0.0, 0.5 * kSpeed, true),
+             high = thrown(all[j], materials, 0.0, -0.5 * kSpeed, false);
+        low.position.z() = -1e-5 - highest(low);
+        high.position.z() = 1e-5 - lowest(high);
+        p.add(low);
+        p.add(high);
+        collide(p);
+        const double apart = p.bodies()[1].velocity.z() - p.bodies()[0].velocity.z();
+        EXPECT_NEAR(apart / kSpeed, e, 0.02) << all[j].name << " on " << all[i].name;
+      }
+  }
+}
+
+}  // namespace
+}  // namespace ejecta
