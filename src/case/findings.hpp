@@ -35,6 +35,7 @@ void sense_overlaps(const Case&, Findings&);
 void sense_walls(const Case&, Findings&);
 void sense_sorter(const Case&, Findings&);
 void sense_records(const Case&, Findings&);
+void sense_idle(const Case&, Findings&);
 void sense_expectations(const Case&, Findings&);
 
 }  // namespace ejecta

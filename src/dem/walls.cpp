@@ -45,6 +45,17 @@ std::vector<Polytope> prisms(const TriangleMesh& mesh, double thickness, const s
   return solids;
 }
 
+Mat3 turn_of(const WallSpec& spec) {
+  return Eigen::AngleAxisd(spec.rotation_angle, spec.rotation_axis.normalized()).toRotationMatrix();
+}
+
+/// A surface from a file, turned about its origin, which then lies at `point`.
+TriangleMesh placed(TriangleMesh mesh, const WallSpec& spec) {
+  const Mat3 turn = turn_of(spec);
+  for (Vec3& v : mesh.vertices) v = spec.point + turn * v;
+  return mesh;
+}
+
 }  // namespace
 
 Wall make_wall(const WallSpec& spec, const Materials& materials, const std::string& directory) {
@@ -64,14 +75,14 @@ Wall make_wall(const WallSpec& spec, const Materials& materials, const std::stri
     if (spec.kind == WallKind::mesh) {
       const std::string path = (std::filesystem::path(directory) / spec.file).string();
       const double thickness = spec.size.z() > 0 ? spec.size.z() : 1e-3;
-      const TriangleMesh mesh = read_stl(path, 1.0);
+      const TriangleMesh mesh = placed(read_stl(path, spec.scale), spec);
       wall.solids = prisms(mesh, thickness, path);
       wall.facets = make_facets(mesh, thickness);
       return wall;
     }
     require_size(spec.size);
     wall.solids = {spec.kind == WallKind::box
-                       ? moved(polytope_box(0.5 * spec.size), Mat3::Identity(), spec.point)
+                       ? moved(polytope_box(0.5 * spec.size), turn_of(spec), spec.point)
                        : slab(spec.point, wall.normal, spec.size)};
     return wall;
   } catch (const InputError& e) {
