@@ -196,7 +196,7 @@ std::vector<Problem> check_prospects(const Case& c, const Company& company, cons
            "a path through the [grid]");
       continue;
     }
-    if (!jet || !(spec.on_belt || plate)) continue;
+    if (!jet || !(spec.on_belt || p.at_plate)) continue;  // one that goes elsewhere need not meet it
     if (!p.over_jet) {
       warn(spec.on_belt && c.launch.offset_across != 0.0 && spec.across == 0.0 ? "launch.offset_across" : key,
            fmt::format("the jet misses \"{}\": undisturbed it passes {} beside where the jet blows",

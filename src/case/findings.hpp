@@ -26,7 +26,7 @@ struct Findings {
 void sense_run(const Case&, Findings&);
 void sense_grid(const Case&, Findings&);
 void sense_boundaries(const Case&, Findings&);
-void sense_turbulence(const Case&, Findings&);
+void sense_states(const Case&, Findings&);
 void sense_materials(const Case&, Findings&);
 void sense_shapes(const Case&, Findings&);
 void sense_motion(const Case&, Findings&);
