@@ -129,12 +129,15 @@ class BodyCheck {
           inside);
     else if (spec_.on_belt && !goes_on)
       problem(
-          Severity::error, place_key_,
+          Severity::error,
+          d != 1                ? place_key_
+          : spec_.across != 0.0 ? key_ + ".across"
+                                : "launch.offset_across",
           fmt::format(
               "the domain is too small for the path: the body sticks {} out of the box through {} where it "
               "crosses the jet's axis",
               mm(depth), name),
-          "a larger [grid] or another stand_off");
+          "a larger [grid] or a path nearer to the jet");
     else if (wall && !held)
       problem(Severity::error, place_key_,
               fmt::format("the body starts {} inside the wall {}", mm(depth), name), inside);

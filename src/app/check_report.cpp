@@ -72,6 +72,7 @@ std::string flow_part(const Case& c, double bandwidth) {
 /// What a surface from a file touches as.
 std::string parts_words(const Shape& shape) {
   if (!shape.balls().empty()) return fmt::format(", as {} spheres", shape.balls().size());
+  if (shape.polytopes().size() == 1) return ", convex";
   return fmt::format(", as {} convex parts, volume {:+.3f} %", shape.polytopes().size(),
                      100 * (shape.parts_volume() / shape.mass_properties().volume - 1));
 }

@@ -125,9 +125,15 @@ class ValueReader {
     const auto* real = std::get_if<double>(&node.value);
     const auto* text = std::get_if<std::string>(&node.value);
     if (key_.dimension == Dimension::none) {
-      if (!whole && !real)
+      if (!whole && !real) {
+        const std::string point = text && !parse_number(*text) ? with_decimal_point(*text) : "";
+        const std::string meant = text && parse_number(*text) ? *text : parse_number(point) ? point : "";
         return fail(node,
-                    kind_words(node) + (text ? " is no bare number (no quotes here)" : " is no number"));
+                    kind_words(node) + (!point.empty() ? " has a comma; a number has a decimal point and no quotes"
+                                        : text         ? " is no bare number (no quotes here)"
+                                                       : " is no number"),
+                    "", &node == &root_ ? meant : "");
+      }
       out = whole ? static_cast<double>(*whole) : *real;
       if (!std::isfinite(out)) return fail(node, "not a finite number");
       return in_range(node, out);
