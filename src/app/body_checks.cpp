@@ -18,6 +18,7 @@
 #include "case/extent.hpp"
 #include "case/load.hpp"
 #include "case/schema.hpp"
+#include "shape/stl.hpp"
 #include "sorter/valve.hpp"
 
 namespace ejecta {
@@ -29,6 +30,7 @@ constexpr double kRest = 1e-3;          // likewise into a wall on which it rest
 constexpr double kRounding = 1 - 1e-9;  // of counts of cells
 // No particle of a sorter, but units that were forgotten:
 constexpr double kHuge = 1.0, kTiny = 1e-6;              // m across
+constexpr double kHugeWall = 20.0;                       // m across
 constexpr double kHeavy = 100.0;                         // kg
 constexpr double kLightest = 10.0, kHeaviest = 23000.0;  // kg/m3; foam and osmium lie in between
 
@@ -237,6 +239,21 @@ void check_source_case(const Case& c, std::vector<Problem>& found) {
   }
 }
 
+/// A surface of a wall whose file has other units.
+void ask_about_walls(const Case& c, std::vector<Problem>& found) {
+  for (std::size_t n = 0; n < c.walls.size(); ++n) {
+    const WallSpec& w = c.walls[n];
+    if (w.kind != WallKind::mesh) continue;
+    const double across = extent_of(read_stl(beside_case(c, w.file), w.scale)).norm();
+    if (w.scale == 1.0 && across > kHugeWall)
+      found.push_back({.key = fmt::format("wall.{}.file", n),
+                       .what = fmt::format("the wall is {} across", mm(across)),
+                       .expected = "a size in metres; is the file in mm? Then scale = 0.001",
+                       .example = "scale = 0.001",
+                       .severity = Severity::warning});
+  }
+}
+
 /// Sizes and masses that no particle of a sorter has: units forgotten, a point taken for a comma.
 void ask_about_size(const BodySpec& spec, const Body& body, std::size_t n, bool flows,
                     std::vector<Problem>& found) {
@@ -276,6 +293,15 @@ void ask_about_size(const BodySpec& spec, const Body& body, std::size_t n, bool 
 }
 
 }  // namespace
+
+Vec3 extent_of(const TriangleMesh& mesh) {
+  Vec3 low = mesh.vertices.front(), high = low;
+  for (const Vec3& v : mesh.vertices) {
+    low = low.cwiseMin(v);
+    high = high.cwiseMax(v);
+  }
+  return high - low;
+}
 
 Reach reach_of(const Body& body) {
   Reach reach;
@@ -354,6 +380,7 @@ std::vector<Problem> check_bodies(const Case& original) {
   check_source_case(c, found);
   if (failed()) return found;
   if (const auto scene = try_scene(c, grid ? &*grid : nullptr, found)) {
+    ask_about_walls(c, found);
     const auto more = check_prospects(c, company_of(*scene), scene->splitter ? &*scene->splitter : nullptr);
     found.insert(found.end(), more.begin(), more.end());
   }

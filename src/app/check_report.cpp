@@ -17,6 +17,7 @@
 #include "case/load.hpp"
 #include "case/words.hpp"
 #include "dem/body.hpp"
+#include "shape/stl.hpp"
 
 namespace ejecta {
 namespace {
@@ -136,6 +137,15 @@ std::string body_part(const Case& c, const Company& company, std::size_t n, cons
   return text + "\n";
 }
 
+/// Surfaces from files alone: what stands in the case one sees there.
+std::string wall_part(const Case& c, const WallSpec& w) {
+  if (w.kind != WallKind::mesh) return "";
+  const TriangleMesh mesh = read_stl(beside_case(c, w.file), w.scale);
+  const Vec3 size = 1e3 * extent_of(mesh);
+  return fmt::format("  wall         \"{}\", {} triangles: {:.4g} x {:.4g} x {:.4g} mm\n", w.name,
+                     mesh.triangles.size(), size.x(), size.y(), size.z());
+}
+
 std::string valve_part(const Case& c) {
   if (c.flow.solver == FlowSolver::none || !has_jet(c)) return "";
   const ValveProspect v = prospect_of_valve(c);
@@ -179,6 +189,7 @@ std::string check_report(const Case& c, const std::vector<Problem>& warnings, do
   const Splitter* plate = scene.splitter ? &*scene.splitter : nullptr;
   const Company company = company_of(scene);
   for (std::size_t n = 0; n < all.bodies.size(); ++n) text += body_part(all, company, n, plate);
+  for (const WallSpec& w : c.walls) text += wall_part(c, w);
   text += valve_part(c) + plate_part(c, plate);
   const std::vector<output::Assumption> assumed = assumptions(c);
   if (!assumed.empty()) text += "  assumptions, since the case does not say:\n";

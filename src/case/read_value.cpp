@@ -128,11 +128,12 @@ class ValueReader {
       if (!whole && !real) {
         const std::string point = text && !parse_number(*text) ? with_decimal_point(*text) : "";
         const std::string meant = text && parse_number(*text) ? *text : parse_number(point) ? point : "";
-        return fail(node,
-                    kind_words(node) + (!point.empty() ? " has a comma; a number has a decimal point and no quotes"
-                                        : text         ? " is no bare number (no quotes here)"
-                                                       : " is no number"),
-                    "", &node == &root_ ? meant : "");
+        return fail(
+            node,
+            kind_words(node) + (!point.empty() ? " has a comma; a number has a decimal point and no quotes"
+                                : text         ? " is no bare number (no quotes here)"
+                                               : " is no number"),
+            "", &node == &root_ ? meant : "");
       }
       out = whole ? static_cast<double>(*whole) : *real;
       if (!std::isfinite(out)) return fail(node, "not a finite number");

@@ -8,6 +8,7 @@
 #include "app/assumptions.hpp"
 #include "case/load.hpp"
 #include "case/template.hpp"
+#include "case/write.hpp"
 
 using namespace ejecta;
 using testing::Contains;
@@ -98,6 +99,8 @@ TEST(Assumptions, AreDefaultsThatDecideAndThatTheUserHasNotSet) {
   EXPECT_THAT(assumed(ejection()), Not(Contains(HasSubstr("splitter"))));
   EXPECT_THAT(assumed(ejection({"valve.rise_time=6 ms"})), Not(Contains(HasSubstr("rise_time"))));
   EXPECT_THAT(assumed(parse_case(case_template("cavity"), "cavity")), IsEmpty());
+  EXPECT_EQ(assumed(parse_case(write_case(ejection()), "resolved.toml")), assumed(ejection()))
+      << "a run of the resolved case assumes the same";
 }
 
 TEST(CheckReport, SaysWhatTheRunWillBe) {

@@ -3,12 +3,15 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <fstream>
+
 #include "app/body_checks.hpp"
 #include "app/forecast.hpp"
 #include "app/scene.hpp"
 #include "case/copies.hpp"
 #include "case/load.hpp"
 #include "case/template.hpp"
+#include "scratch_directory.hpp"
 
 using namespace ejecta;
 using testing::Contains;
@@ -113,6 +116,33 @@ TEST(CheckReport, ShowsBodyValveAndPlate) {
   EXPECT_THAT(text, HasSubstr("past the plate's edge at 87.3 ms, 45 mm below it"));
   EXPECT_THAT(text, HasSubstr("is fully open from 6 ms to 8 ms, shut at 9 ms"));
   EXPECT_THAT(text, HasSubstr("45 mm above the undisturbed path there, with which it moves"));
+}
+
+/// A square of 10 units in x and y, scaled to mm, turned upright about y and put 100 mm along x.
+TEST(Walls, FromFilesHaveAScaleAndAPlace) {
+  const ScratchDirectory scratch;
+  std::ofstream(scratch / "sheet.stl")
+      << "solid s\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 10 0 0\n"
+         "vertex 10 10 0\nendloop\nendfacet\nfacet normal 0 0 1\nouter loop\n"
+         "vertex 0 0 0\nvertex 10 10 0\nvertex 0 10 0\nendloop\nendfacet\nendsolid s\n";
+  const auto refused = [&](const char* position, const char* place) {
+    const std::string text =
+        std::string(
+            "[run]\nend_time = \"1 ms\"\n[flow]\nsolver = \"none\"\n[[body]]\ndiameter = "
+            "\"4 mm\"\nposition = ") +
+        position + "\n[[wall]]\nname = \"sheet\"\nkind = \"mesh\"\nfile = \"sheet.stl\"\n" + place;
+    for (const Problem& p : check_bodies(parse_case(text, (scratch / "case.toml").string())))
+      if (p.severity == Severity::error) return p.what;
+    return std::string();
+  };
+  const char* upright =
+      "scale = 0.001\npoint = [\"100 mm\", \"0 mm\", \"0 mm\"]\nrotation_axis = [0, 1, 0]\nrotation_angle = "
+      "\"90 deg\"\n";
+  EXPECT_THAT(refused("[\"100.5 mm\", \"5 mm\", \"-5 mm\"]", upright), HasSubstr("overlaps wall \"sheet\""));
+  EXPECT_EQ(refused("[\"105 mm\", \"5 mm\", \"0.5 mm\"]", upright), "");
+  EXPECT_THAT(refused("[\"105 mm\", \"5 mm\", \"0.5 mm\"]",
+                      "scale = 0.001\npoint = [\"100 mm\", \"0 mm\", \"0 mm\"]\n"),
+              HasSubstr("overlaps wall \"sheet\""));
 }
 
 /// Two bodies on one belt: the gap is that between their surfaces, whatever their shapes and turns.
