@@ -17,7 +17,7 @@ const std::array<Part, 14> parts{{
     {sense_run, {"run", "environment", "fluid", "flow", "body", "splitter"}},
     {sense_grid, {"grid"}},
     {sense_boundaries, {"boundary", "environment", "flow", "grid"}},
-    {sense_states, {"boundary", "initial", "flow", "grid", "environment", "fluid"}},
+    {sense_states, {"boundary", "initial", "flow", "grid", "environment", "fluid", "body"}},
     {sense_materials, {"material", "material_pair", "contact"}},
     {sense_shapes, {"body", "material", "launch", "run"}},
     {sense_motion, {"body", "run"}},

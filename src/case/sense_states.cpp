@@ -130,8 +130,7 @@ void check_gas(const Case& c, Findings& found) {
         "states of one gas: is the density that of a liquid, or the pressure in another unit?",
         "temperature = \"300 K\"");
   const double g = c.fluid.gamma, critical = std::pow(0.5 * (g + 1.0), g / (g - 1.0));
-  if (c.flow.solver == FlowSolver::compressible_piso && pressures.low > 0.0 &&
-      pressures.high > critical * pressures.low)
+  if (pressures.low > 0.0 && pressures.high > critical * pressures.low)
     found.error(
         pressures.high_key.starts_with("environment") ? pressures.low_key : pressures.high_key,
         fmt::format(
@@ -154,7 +153,7 @@ std::vector<double> thinned(const std::vector<double>& all, std::size_t most_loo
 void sense_states(const Case& c, Findings& found) {
   const std::optional<Box> box = grid_box(c);
   if (c.flow.solver == FlowSolver::none || !box) return;
-  if (c.flow.solver != FlowSolver::incompressible) check_gas(c, found);
+  if (c.flow.solver == FlowSolver::compressible_piso && !c.bodies.empty()) check_gas(c, found);
   Points cells;
   for (std::size_t a = 0; a < 3; ++a) cells[a] = thinned(cell_centres(c.grid.axis[a]), looks_at_face);
   const auto everywhere = [](const Vec3&) { return true; };

@@ -138,9 +138,9 @@ TEST(Walls, FromFilesHaveAScaleAndAPlace) {
   const char* upright =
       "scale = 0.001\npoint = [\"100 mm\", \"0 mm\", \"0 mm\"]\nrotation_axis = [0, 1, 0]\nrotation_angle = "
       "\"90 deg\"\n";
-  EXPECT_THAT(refused("[\"100.5 mm\", \"5 mm\", \"-5 mm\"]", upright), HasSubstr("overlaps wall \"sheet\""));
-  EXPECT_EQ(refused("[\"105 mm\", \"5 mm\", \"0.5 mm\"]", upright), "");
-  EXPECT_THAT(refused("[\"105 mm\", \"5 mm\", \"0.5 mm\"]",
+  EXPECT_THAT(refused("[\"100.5 mm\", \"3 mm\", \"-6 mm\"]", upright), HasSubstr("overlaps wall \"sheet\""));
+  EXPECT_EQ(refused("[\"106 mm\", \"3 mm\", \"0.5 mm\"]", upright), "");
+  EXPECT_THAT(refused("[\"106 mm\", \"3 mm\", \"0.5 mm\"]",
                       "scale = 0.001\npoint = [\"100 mm\", \"0 mm\", \"0 mm\"]\n"),
               HasSubstr("overlaps wall \"sheet\""));
 }
