@@ -179,31 +179,25 @@ double widest_around(const Axis& axis, double from, double to) {
   return widest;
 }
 
-/// Sets up what a run sets up. What it refuses is about a body, a wall or the contact: the key by the name in
+/// What setting up the bodies of a run refused is about a body, a wall or the contact: the key by the name in
 /// the message.
-std::optional<Scene> try_scene(const Case& c, const Grid* grid, std::vector<Problem>& found) {
-  try {
-    return make_scene(c, grid);
-  } catch (const InputError& e) {
-    const std::string what = e.what();
-    std::string key = "contact";
-    for (std::size_t n = 0; n < c.walls.size(); ++n)
-      if (what.starts_with(fmt::format("wall \"{}\"", c.walls[n].name)))
-        key = fmt::format("wall.{}{}", n, c.walls[n].kind == WallKind::mesh ? ".file" : "");
-    // Of two bodies, the one whose place is the harder to see: that from the belt.
-    for (const bool on_belt : {false, true})
-      for (std::size_t n = c.bodies.size(); n-- > 0;)
-        if (c.bodies[n].on_belt == on_belt &&
-            what.find(fmt::format("body \"{}\"", c.bodies[n].name)) != std::string::npos)
-          key = fmt::format("body.{}.{}", n, on_belt ? "on_belt" : "position");
-    for (const char* section : {"splitter", "material", "contact.time_step", "domain"})
-      if (what.starts_with(section)) key = section;
-    const bool apart = what.find("overlaps") != std::string::npos;
-    found.push_back({.key = key,
-                     .what = what,
-                     .expected = apart ? "bodies and walls that are apart when the run starts" : ""});
-    return std::nullopt;
-  }
+void add_refusal(const Case& c, const std::string& what, std::vector<Problem>& found) {
+  std::string key = "contact";
+  for (std::size_t n = 0; n < c.walls.size(); ++n)
+    if (what.starts_with(fmt::format("wall \"{}\"", c.walls[n].name)))
+      key = fmt::format("wall.{}{}", n, c.walls[n].kind == WallKind::mesh ? ".file" : "");
+  // Of two bodies, the one whose place is the harder to see: that from the belt.
+  for (const bool on_belt : {false, true})
+    for (std::size_t n = c.bodies.size(); n-- > 0;)
+      if (c.bodies[n].on_belt == on_belt &&
+          what.find(fmt::format("body \"{}\"", c.bodies[n].name)) != std::string::npos)
+        key = fmt::format("body.{}.{}", n, on_belt ? "on_belt" : "position");
+  for (const char* section : {"splitter", "material", "contact.time_step", "domain"})
+    if (what.starts_with(section)) key = section;
+  const bool apart = what.find("overlaps") != std::string::npos;
+  found.push_back({.key = key,
+                   .what = what,
+                   .expected = apart ? "bodies and walls that are apart when the run starts" : ""});
 }
 
 /// Valve traces and measured curves that cannot be read.
@@ -252,6 +246,24 @@ void ask_about_walls(const Case& c, std::vector<Problem>& found) {
                        .example = "scale = 0.001",
                        .severity = Severity::warning});
   }
+}
+
+/// Of a case that cannot be set up as a whole: each body by itself, and what is wrong with it.
+std::vector<Body> bodies_one_by_one(const Case& c, std::vector<Problem>& found) {
+  std::vector<Body> bodies;
+  try {
+    const Materials materials(c);
+    for (std::size_t n = 0; n < c.bodies.size(); ++n) {
+      try {
+        bodies.push_back(make_body(c.bodies[n], materials, folder_of(c)));
+      } catch (const InputError& e) {
+        found.push_back({.key = fmt::format("body.{}{}", n, file_key(c.bodies[n])), .what = e.what()});
+      }
+    }
+  } catch (const InputError& e) {
+    found.push_back({.key = "material", .what = e.what()});
+  }
+  return bodies;
 }
 
 /// Sizes and masses that no particle of a sorter has: units forgotten, a point taken for a comma.
@@ -351,27 +363,24 @@ std::vector<Problem> check_bodies(const Case& original) {
   const bool flows = original.flow.solver != FlowSolver::none;
   const Case c = with_first_copies(original);
   std::vector<Problem> found;
-  std::vector<Body> bodies;
   const auto failed = [&] {
     return std::any_of(found.begin(), found.end(),
                        [](const Problem& p) { return p.severity == Severity::error; });
   };
-  try {
-    const Materials materials(c);
-    for (std::size_t n = 0; n < c.bodies.size(); ++n) {
-      try {
-        bodies.push_back(make_body(c.bodies[n], materials, folder_of(c)));
-        ask_about_size(c.bodies[n], bodies.back(), n, flows, found);
-      } catch (const InputError& e) {
-        found.push_back({.key = fmt::format("body.{}{}", n, file_key(c.bodies[n])), .what = e.what()});
-      }
-    }
-  } catch (const InputError& e) {
-    found.push_back({.key = "material", .what = e.what()});
-  }
-  if (failed()) return found;
   std::optional<Grid> grid;
   if (flows) grid.emplace(make_grid(c));
+  std::optional<Scene> scene;
+  std::string refusal;
+  std::vector<Body> bodies;
+  try {  // first of all, and once: surfaces may take seconds to divide
+    scene.emplace(make_scene(c, grid ? &*grid : nullptr));
+    bodies = company_of(*scene).bodies;
+  } catch (const InputError& e) {
+    refusal = e.what();
+    bodies = bodies_one_by_one(c, found);
+  }
+  if (failed()) return found;
+  for (std::size_t n = 0; n < bodies.size(); ++n) ask_about_size(c.bodies[n], bodies[n], n, flows, found);
   if (grid) {
     const auto more = check_bodies(c, *grid, bodies);
     found.insert(found.end(), more.begin(), more.end());
@@ -379,11 +388,13 @@ std::vector<Problem> check_bodies(const Case& original) {
   check_tables(c, found);
   check_source_case(c, found);
   if (failed()) return found;
-  if (const auto scene = try_scene(c, grid ? &*grid : nullptr, found)) {
-    ask_about_walls(c, found);
-    const auto more = check_prospects(c, company_of(*scene), scene->splitter ? &*scene->splitter : nullptr);
-    found.insert(found.end(), more.begin(), more.end());
+  if (!scene) {
+    add_refusal(c, refusal, found);
+    return found;
   }
+  ask_about_walls(c, found);
+  const auto more = check_prospects(c, company_of(*scene), scene->splitter ? &*scene->splitter : nullptr);
+  found.insert(found.end(), more.begin(), more.end());
   return found;
 }
 
