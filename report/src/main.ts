@@ -1,9 +1,9 @@
 import "./style.css";
 import { bodyColour, isDark } from "./colour";
-import { readRuns, type Run } from "./data";
+import { readRuns, type JsonObject, type Run } from "./data";
 import { h, section } from "./dom";
 import { figureCharts, pictureViews } from "./figures";
-import { unbroken } from "./format";
+import { fixed, unbroken } from "./format";
 import { motionCharts, seriesCharts } from "./motion_charts";
 import { pathNote, pathView } from "./path";
 import { Player } from "./player";
@@ -70,12 +70,33 @@ function titleOf(runs: Run[]): string {
   return runs.map((run) => String(run.result?.["title"] || run.name)).filter((t, n, all) => all.indexOf(t) === n).join(" \u00b7 ");
 }
 
+/** What `--set` changed in the case of a run. */
+function changes(run: Run): HTMLElement | null {
+  const set = run.manifest?.["set"];
+  if (!Array.isArray(set) || set.length === 0) return null;
+  return h("p", { class: "changes" }, "changed: ", ...set.flatMap((one, n) => [n > 0 ? ", " : "", h("code", {}, String(one))]));
+}
+
+/** Where the dividing plate is, and by what it was given. */
+function plateNote(run: Run): HTMLElement | null {
+  const plate = run.result?.["plate"] as JsonObject | undefined;
+  const edge = plate?.["edge_from_nozzle_m"];
+  if (!Array.isArray(edge)) return null;
+  const [x, z] = edge.map((v) => fixed(Number(v) * 1e3, 1));
+  const height = plate!["height_above_path_m"];
+  const how = typeof height === "number"
+    ? `${fixed(height * 1e3, 1)} mm above the undisturbed path there, with which it moves`
+    : String(plate!["given_as"]);
+  return h("p", { class: "plate" }, `Plate: edge at x, z = ${x}, ${z} mm from the nozzle, ${how}.`);
+}
+
 function verdict(runs: Run[]): HTMLElement {
   const head = h("header", { class: "verdict" }, h("p", { class: "title" }, titleOf(runs)));
   if (runs.length === 1) head.append(h("h1", { id: "verdict" }, unbroken(runs[0]!.verdict)));
   else head.append(h("h1", {}, `${runs.length} runs compared`),
     h("ul", { class: "verdicts" }, ...runs.map((run, r) => h("li", {},
-      h("span", { class: r > 0 ? "swatch dashed ink" : "swatch ink" }), h("strong", {}, `${run.name}: `), unbroken(run.verdict)))));
+      h("span", { class: r > 0 ? "swatch dashed ink" : "swatch ink" }), h("strong", {}, `${run.name}: `), unbroken(run.verdict), changes(run)))));
+  if (runs.length === 1) for (const note of [changes(runs[0]!), plateNote(runs[0]!)]) if (note) head.append(note);
   const cards = bodyCards(runs);
   if (cards) head.append(cards);
   return head;

@@ -5,7 +5,7 @@ import { bytes, duration, fixed, short, labelOf, thousands, words } from "./form
 const isNumber = (v: Json | undefined): v is number => typeof v === "number";
 
 /** Keys of result.json that have a place of their own on the page. */
-const OWN_PLACE = new Set(["title", "outcome", "bodies", "ledger", "operators", "assumptions", "expectations"]);
+const OWN_PLACE = new Set(["title", "outcome", "bodies", "ledger", "operators", "assumptions", "expectations", "plate"]);
 
 interface Fact {
   label: string;
@@ -20,6 +20,14 @@ function neededImpulse(body: JsonObject): number | undefined {
   return isNumber(impulse) && isNumber(margin) && isNumber(mass) ? impulse - mass * margin : undefined;
 }
 
+/** "right: ejected", "by-catch: ejected", "undecided: the time limit came first"; "" without a plate. */
+function outcomeOf(body: JsonObject): string {
+  const outcome = body["outcome"];
+  if (typeof outcome !== "string") return "";
+  if (outcome === "undecided") return "undecided: the time limit came first";
+  return typeof body["judgement"] === "string" ? `${body["judgement"]}: ${outcome}` : outcome;
+}
+
 function factsOfBody(body: JsonObject, pointer: string): Fact[] {
   const facts: Fact[] = [];
   const add = (key: string, label: string, unit: string, text: (v: number) => string): void => {
@@ -27,7 +35,9 @@ function factsOfBody(body: JsonObject, pointer: string): Fact[] {
     if (isNumber(value)) facts.push({ label, unit, text: text(value), pointer: `${pointer}/${key}` });
   };
   const signed = (v: number, digits: number): string => (v > 0 ? "+" : "") + fixed(v, digits);
-  add("clearance_at_splitter_m", "over the plate's edge", "mm", (v) => signed(v * 1e3, 1));
+  const clearance = body["clearance_at_splitter_m"];
+  add("clearance_at_splitter_m", isNumber(clearance) && clearance < 0 ? "below the plate's edge" : "above the plate's edge", "mm",
+    (v) => fixed(Math.abs(v) * 1e3, 1));
   add("velocity_margin_z_m_s", "margin in vertical velocity", "m/s", (v) => signed(v, 2));
   add("velocity_change_z_m_s", "vertical velocity gained", "m/s", (v) => signed(v, 2));
   const needed = neededImpulse(body);
@@ -45,7 +55,7 @@ function crowdTable(runs: Run[]): HTMLElement {
   const judged = bodies.some(({ body }) => typeof body["outcome"] === "string");
   const rows = bodies.map(({ run, r, body, facts }) => [
     String(body["name"]) + (runs.length > 1 ? `, ${run.name}` : ""),
-    ...(judged ? [String(body["outcome"] ?? "\u2013")] : []),
+    ...(judged ? [outcomeOf(body) || "\u2013"] : []),
     ...labels.map((label) => {
       const f = facts.find((fact) => fact.label === label);
       return h("span", f ? { "data-run": r, "data-pointer": f.pointer } : {}, f ? `${f.text} ${f.unit}` : "\u2013");
@@ -61,9 +71,10 @@ export function bodyCards(runs: Run[]): HTMLElement | null {
   if (runs.reduce((count, run) => count + bodiesOf(run).length, 0) > CROWD) return crowdTable(runs);
   const cards = h("div", { class: "cards" });
   runs.forEach((run, r) => bodiesOf(run).forEach((body, b) => {
-    const outcome = body["outcome"];
-    const ejected = outcome === "ejected";
-    const sign = ejected ? "\u2197 " : outcome === "not ejected" ? "\u2192 " : "";
+    const outcome = outcomeOf(body);
+    const ejected = body["outcome"] === "ejected";
+    const good = body["judgement"] === undefined ? ejected : body["judgement"] === "right";
+    const sign = ejected ? "\u2197 " : body["outcome"] === "not ejected" ? "\u2192 " : "";
     const list = h("dl", {});
     for (const f of factsOfBody(body, `/bodies/${b}`))
       list.append(h("div", {},
@@ -73,8 +84,8 @@ export function bodyCards(runs: Run[]): HTMLElement | null {
       h("header", {},
         h("h3", {}, h("span", { class: r > 0 ? "swatch dashed" : "swatch", "data-body": b }), String(body["name"] ?? `body ${b}`),
           runs.length > 1 ? h("span", { class: "of-run" }, ` ${run.name}`) : null),
-        typeof outcome === "string"
-          ? h("p", { class: ejected ? "outcome ejected" : "outcome kept" }, h("span", { "aria-hidden": "true" }, sign), outcome)
+        outcome !== ""
+          ? h("p", { class: good ? "outcome ejected" : "outcome kept" }, h("span", { "aria-hidden": "true" }, sign), outcome)
           : null),
       list));
   }));
@@ -176,7 +187,7 @@ export function assumptionList(run: Run): HTMLElement | null {
   if (!Array.isArray(list) || list.length === 0) return null;
   return h("ul", { class: "assumptions" }, ...(list as JsonObject[]).map((a) => h("li", {},
     h("p", { class: "what" }, `${a["what"]}: `, h("strong", {}, String(a["value"]))),
-    h("p", {}, String(a["reason"] ?? "")),
+    a["reason"] ? h("p", {}, String(a["reason"])) : null,
     a["key"] ? h("p", { class: "key-name" }, "Change it with ", h("code", {}, String(a["key"]))) : null)));
 }
 

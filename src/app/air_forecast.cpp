@@ -6,10 +6,9 @@
 
 #include "app/air_limits.hpp"
 #include "app/jet_source.hpp"
+#include "app/prospect.hpp"
+#include "case/copies.hpp"
 #include "case/extent.hpp"
-#include "case/load.hpp"
-#include "dem/course.hpp"
-#include "sorter/launch.hpp"
 
 namespace ejecta {
 namespace {
@@ -26,30 +25,6 @@ double peak_speed(const JetSource& jet, double until, double height) {
   double fastest = 0.0;
   for (int n = 0; n <= samples; ++n) fastest = std::max(fastest, jet.fastest(until * n / samples, height));
   return fastest;
-}
-
-/// When a body that nothing disturbs has left the box for good, s.
-double leaves_box(const Case& c, const BodySpec& b, const Box& box) {
-  if (b.motion == Motion::fixed) return c.run.end_time;
-  constexpr int samples = 2000;
-  const FlightState start = c.launch.enabled && b.on_belt
-                                ? launch_state(c.launch, c.jet.nozzle, c.environment.gravity, 0.0)
-                                : FlightState{b.position, b.velocity};
-  const Vec3 half = half_extent(b);
-  const double reach = b.shape == ShapeKind::sphere ? half.x() : half.norm();
-  const auto course = b.motion == Motion::prescribed ? make_course(b, folder_of(c)) : nullptr;
-  Vec3 driven = start.position + (course ? course->first_way() : Vec3(0, 0, 0));
-  double last = 0.0;
-  for (int n = 0; n <= samples; ++n) {
-    const double t = c.run.end_time * n / samples;
-    const Vec3 x =
-        course ? driven : Vec3(start.position + t * start.velocity + 0.5 * t * t * c.environment.gravity);
-    if (course && t >= b.release_at) driven += course->way(t, c.run.end_time / samples);
-    const bool inside =
-        (x.array() + reach >= box.low.array()).all() && (x.array() - reach <= box.high.array()).all();
-    if (inside) last = t;
-  }
-  return last;
 }
 
 /// The jet after its valve has closed, on its axis: behind the wave that tells it of the end, u = z / 2t
@@ -69,16 +44,25 @@ double dying_time(const Case& original) {
   return std::sqrt(moment / (4.0 * kDeadAir * k * k * (high - low)));
 }
 
+/// The air may be over before the run is.
+bool stops_the_air(const Case& c) {
+  return c.flow.solver != FlowSolver::none && has_jet(c) && c.run.until == RunUntil::verdict;
+}
+
 }  // namespace
 
 double jet_speed(const Case& c) { return peak_speed(*jet_of(c), c.run.end_time, jet_height(c)); }
 
 double air_until(const Case& c) {
-  if (c.flow.solver == FlowSolver::none || !has_jet(c) || c.run.until != RunUntil::verdict)
-    return c.run.end_time;
+  return stops_the_air(c) ? air_until(c, company_of(with_first_copies(c))) : c.run.end_time;
+}
+
+double air_until(const Case& c, const Company& company) {
+  if (!stops_the_air(c)) return c.run.end_time;
   const double closed = jet_of(c)->dead_from();
-  double leave = 0.0;
-  for (const BodySpec& b : c.bodies) leave = std::max(leave, leaves_box(c, b, *grid_box(c)));
+  double leave = 0.0;  // until the last body that nothing disturbs has left the box for good
+  for (std::size_t n = 0; n < company.bodies.size(); ++n)
+    if (const auto in_box = prospect_of(c, company, n, nullptr).in_box) leave = std::max(leave, in_box->to);
   return std::min(c.run.end_time, std::max(closed, std::min(leave, closed + dying_time(c))));
 }
 

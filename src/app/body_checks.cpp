@@ -4,16 +4,22 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
+#include "app/computed_jet.hpp"
 #include "app/flow_model.hpp"
-#include "app/grid_walls.hpp"
+#include "app/jet_measured.hpp"
+#include "app/jet_model.hpp"
+#include "app/jet_source.hpp"
+#include "app/prospect.hpp"
+#include "app/scene.hpp"
 #include "base/error.hpp"
 #include "case/copies.hpp"
 #include "case/extent.hpp"
 #include "case/load.hpp"
 #include "case/schema.hpp"
-#include "dem/particles.hpp"
-#include "sorter/launch.hpp"
+#include "shape/stl.hpp"
+#include "sorter/valve.hpp"
 
 namespace ejecta {
 namespace {
@@ -22,10 +28,19 @@ constexpr double cells_needed = 4.0, cells_advised = 8.0;  // across the smalles
 constexpr double kTouch = 1e-6;         // of a body: that much it may stick out by rounding
 constexpr double kRest = 1e-3;          // likewise into a wall on which it rests (Particles::require_apart)
 constexpr double kRounding = 1 - 1e-9;  // of counts of cells
-constexpr double kHuge = 1.0;           // m: no particle of a sorter, but a mesh whose units were forgotten
+// No particle of a sorter, but units that were forgotten:
+constexpr double kHuge = 1.0, kTiny = 1e-6;              // m across
+constexpr double kHugeWall = 20.0;                       // m across
+constexpr double kHeavy = 100.0;                         // kg
+constexpr double kLightest = 10.0, kHeaviest = 23000.0;  // kg/m3; foam and osmium lie in between
 
 std::string mm(double length) {
   return std::abs(length) < 1.0 ? fmt::format("{:.4g} mm", 1e3 * length) : fmt::format("{:.4g} m", length);
+}
+
+/// The key that names the surface of a body, behind "body.0".
+std::string file_key(const BodySpec& b) {
+  return !b.files.empty() ? ".files" : !b.file.empty() ? ".file" : "";
 }
 
 bool from_file(const BodySpec& b) { return !b.file.empty() || !b.files.empty(); }
@@ -116,12 +131,15 @@ class BodyCheck {
           inside);
     else if (spec_.on_belt && !goes_on)
       problem(
-          Severity::error, place_key_,
+          Severity::error,
+          d != 1                ? place_key_
+          : spec_.across != 0.0 ? key_ + ".across"
+                                : "launch.offset_across",
           fmt::format(
               "the domain is too small for the path: the body sticks {} out of the box through {} where it "
               "crosses the jet's axis",
               mm(depth), name),
-          "a larger [grid] or another stand_off");
+          "a larger [grid] or a path nearer to the jet");
     else if (wall && !held)
       problem(Severity::error, place_key_,
               fmt::format("the body starts {} inside the wall {}", mm(depth), name), inside);
@@ -161,29 +179,164 @@ double widest_around(const Axis& axis, double from, double to) {
   return widest;
 }
 
-/// A body from the belt against those that are placed and all walls: all others were compared when the case
-/// was read.
-void check_belt(const Case& c, const Grid& grid, std::vector<Problem>& found) {
-  const auto belt =
-      std::find_if(c.bodies.begin(), c.bodies.end(), [](const BodySpec& b) { return b.on_belt; });
-  if (!c.launch.enabled || belt == c.bodies.end()) return;
-  const int n = static_cast<int>(belt - c.bodies.begin());
-  Particles particles = make_particles(c);
-  for (const Wall& wall : grid_walls(c, grid, particles)) particles.add(wall);
-  if (particles.bodies().size() + particles.walls().size() < 2) return;
-  try {
-    const Body& body = particles.bodies()[static_cast<std::size_t>(n)];
-    const FlightState s = launch_state(c.launch, c.jet.nozzle, c.environment.gravity, 0.0);
-    particles.place(n, s.position, body.orientation, s.velocity, body.angular_velocity);
-    particles.require_apart();
-  } catch (const InputError& e) {
-    found.push_back({.key = fmt::format("body.{}.on_belt", n),
-                     .what = e.what(),
-                     .expected = "bodies that are apart when the run starts"});
+/// What setting up the bodies of a run refused is about a body, a wall or the contact: the key by the name in
+/// the message.
+void add_refusal(const Case& c, const std::string& what, std::vector<Problem>& found) {
+  std::string key = "contact";
+  for (std::size_t n = 0; n < c.walls.size(); ++n)
+    if (what.starts_with(fmt::format("wall \"{}\"", c.walls[n].name)))
+      key = fmt::format("wall.{}{}", n, c.walls[n].kind == WallKind::mesh ? ".file" : "");
+  // Of two bodies, the one whose place is the harder to see: that from the belt.
+  for (const bool on_belt : {false, true})
+    for (std::size_t n = c.bodies.size(); n-- > 0;)
+      if (c.bodies[n].on_belt == on_belt &&
+          what.find(fmt::format("body \"{}\"", c.bodies[n].name)) != std::string::npos)
+        key = fmt::format("body.{}.{}", n, on_belt ? "on_belt" : "position");
+  for (const char* section : {"splitter", "material", "contact.time_step", "domain"})
+    if (what.starts_with(section)) key = section;
+  const bool apart = what.find("overlaps") != std::string::npos;
+  found.push_back({.key = key,
+                   .what = what,
+                   .expected = apart ? "bodies and walls that are apart when the run starts" : ""});
+}
+
+/// Valve traces and measured curves that cannot be read.
+void check_tables(const Case& c, std::vector<Problem>& found) {
+  const auto named = [&](const std::string& key, const auto& read) {
+    const std::size_t before = found.size();
+    read();
+    for (std::size_t n = before; n < found.size(); ++n) found[n].key = key;
+  };
+  if (c.valve.shape == ValveShape::trace)
+    named("valve.trace", [&] { read_valve_trace(beside_case(c, c.valve.trace), found); });
+  for (std::size_t n = 0; n < c.measured.size(); ++n) {
+    const MeasuredSpec& m = c.measured[n];
+    const bool probe =
+        std::any_of(c.probes.begin(), c.probes.end(), [&](const ProbeSpec& p) { return p.name == m.of; });
+    named(fmt::format("measured.{}.file", n),
+          [&] { read_measured(beside_case(c, m.file), probe ? Dimension::time : Dimension::length, found); });
   }
 }
 
+/// The case that is to compute the jet.
+void check_source_case(const Case& c, std::vector<Problem>& found) {
+  if (c.flow.solver == FlowSolver::none || !has_jet(c) || c.jet.kind != JetKind::computed) return;
+  try {
+    require_jet_case(computed_jet_case(c));
+  } catch (const InputError& e) {
+    const std::string all = e.what();
+    const std::size_t end = std::min(all.find('\n'), all.size());
+    found.push_back({.key = "jet.source_case",
+                     .what = all.substr(0, end),
+                     .expected = "the case of a jet that blows from the orifice of this valve",
+                     .example = "source_case = \"jet-700kPa.toml\""});
+  }
+}
+
+/// Whether an open surface looks downwards, so that what falls on it falls through: its area as a vector,
+/// which is zero for a closed one.
+bool looks_down(const TriangleMesh& mesh, const WallSpec& w, const Vec3& gravity) {
+  Vec3 sum(0, 0, 0);
+  double area = 0.0;
+  for (const auto& t : mesh.triangles) {
+    const auto corner = [&](std::size_t k) { return mesh.vertices[static_cast<std::size_t>(t[k])]; };
+    const Vec3 twice = (corner(1) - corner(0)).cross(corner(2) - corner(0));
+    sum += twice;
+    area += twice.norm();
+  }
+  const Vec3 turned = Eigen::AngleAxisd(w.rotation_angle, w.rotation_axis.normalized()) * sum;
+  return turned.dot(gravity) > 0.3 * area * gravity.norm();
+}
+
+/// A surface of a wall whose file has other units, or which bodies meet on the wrong side.
+void ask_about_walls(const Case& c, std::vector<Problem>& found) {
+  for (std::size_t n = 0; n < c.walls.size(); ++n) {
+    const WallSpec& w = c.walls[n];
+    if (w.kind != WallKind::mesh) continue;
+    const TriangleMesh mesh = read_stl(beside_case(c, w.file), w.scale);
+    if (!w.two_sided && looks_down(mesh, w, c.environment.gravity))
+      found.push_back(
+          {.key = fmt::format("wall.{}.file", n),
+           .what = "the surface is open and its normals look down: what falls on it falls through",
+           .expected = "triangles that turn the other way, or both sides of it",
+           .example = "two_sided = true",
+           .severity = Severity::warning});
+    const double across = extent_of(mesh).norm();
+    if (w.scale == 1.0 && across > kHugeWall)
+      found.push_back({.key = fmt::format("wall.{}.file", n),
+                       .what = fmt::format("the wall is {} across", mm(across)),
+                       .expected = "a size in metres; is the file in mm? Then scale = 0.001",
+                       .example = "scale = 0.001",
+                       .severity = Severity::warning});
+  }
+}
+
+/// Of a case that cannot be set up as a whole: each body by itself, and what is wrong with it.
+std::vector<Body> bodies_one_by_one(const Case& c, std::vector<Problem>& found) {
+  std::vector<Body> bodies;
+  try {
+    const Materials materials(c);
+    for (std::size_t n = 0; n < c.bodies.size(); ++n) {
+      try {
+        bodies.push_back(make_body(c.bodies[n], materials, folder_of(c)));
+      } catch (const InputError& e) {
+        found.push_back({.key = fmt::format("body.{}{}", n, file_key(c.bodies[n])), .what = e.what()});
+      }
+    }
+  } catch (const InputError& e) {
+    found.push_back({.key = "material", .what = e.what()});
+  }
+  return bodies;
+}
+
+/// Sizes and masses that no particle of a sorter has: units forgotten, a point taken for a comma.
+void ask_about_size(const BodySpec& spec, const Body& body, std::size_t n, bool flows,
+                    std::vector<Problem>& found) {
+  const auto ask = [&](const std::string& key, const std::string& what, const std::string& expected,
+                       const std::string& example) {
+    found.push_back(
+        {.key = key, .what = what, .expected = expected, .example = example, .severity = Severity::warning});
+  };
+  const std::string key = fmt::format("body.{}", n);
+  const double size = 2.0 * body.shape.bounding_radius();
+  const bool asked = !found.empty();  // once is enough: a case of boulders has many
+  const std::string mass =
+      fmt::format(" and weighs {}", body.mass < 1.0 ? fmt::format("{:.3g} g", 1e3 * body.mass)
+                                                    : fmt::format("{:.4g} kg", body.mass));
+  if (from_file(spec) && spec.scale == 1.0 && size > kHuge && !flows)
+    ask(key, fmt::format("the body is {:.3g} m across{}", size, mass),
+        "a size in metres; is the file in mm? Then scale = 0.001", "scale = 0.001");
+  else if (from_file(spec) && size < kTiny)
+    ask(key + ".scale", fmt::format("the body is {:.3g} um across", 1e6 * size),
+        "is the file in metres already? Then scale = 1", "scale = 1");
+  else if (body.motion == Motion::free && body.mass > kHeavy && !asked)
+    ask(spec.mass      ? key + ".mass"
+        : spec.density ? key + ".density"
+                       : key,
+        fmt::format("the body is {} across{}", mm(size), mass),
+        "grams rather than tonnes? See its size and density", "density = \"2700 kg/m3\"");
+  if (body.motion != Motion::free) return;
+  const double density = body.mass / body.shape.mass_properties().volume;
+  if (density < kLightest || density > kHeaviest)
+    ask(spec.mass      ? key + ".mass"
+        : spec.density ? key + ".density"
+                       : key + ".material",
+        fmt::format("the body has a density of {:.4g} kg/m3{}", density,
+                    density < kLightest ? ", less than a foam's: a point that parts thousands?"
+                                        : ", more than any metal's"),
+        "that of the material", "density = \"2700 kg/m3\"");
+}
+
 }  // namespace
+
+Vec3 extent_of(const TriangleMesh& mesh) {
+  Vec3 low = mesh.vertices.front(), high = low;
+  for (const Vec3& v : mesh.vertices) {
+    low = low.cwiseMin(v);
+    high = high.cwiseMax(v);
+  }
+  return high - low;
+}
 
 Reach reach_of(const Body& body) {
   Reach reach;
@@ -231,33 +384,40 @@ std::vector<Problem> check_bodies(const Case& c, const Grid& grid, std::span<con
 
 std::vector<Problem> check_bodies(const Case& original) {
   const bool flows = original.flow.solver != FlowSolver::none;
-  const Case c = flows ? with_copies(original) : original;
+  const Case c = with_first_copies(original);
   std::vector<Problem> found;
+  const auto failed = [&] {
+    return std::any_of(found.begin(), found.end(),
+                       [](const Problem& p) { return p.severity == Severity::error; });
+  };
+  std::optional<Grid> grid;
+  if (flows) grid.emplace(make_grid(c));
+  std::optional<Scene> scene;
+  std::string refusal;
   std::vector<Body> bodies;
-  const Materials materials(c);
-  for (std::size_t n = 0; n < c.bodies.size(); ++n) {
-    const BodySpec& spec = c.bodies[n];
-    if (!flows && !from_file(spec)) continue;
-    try {
-      bodies.push_back(make_body(spec, materials, folder_of(c)));
-    } catch (const InputError& e) {
-      found.push_back({.key = fmt::format("body.{}", n), .what = e.what()});
-      continue;
-    }
-    const double size = 2.0 * bodies.back().shape.bounding_radius();
-    if (!flows && size > kHuge && spec.scale == 1.0)
-      found.push_back({.key = fmt::format("body.{}", n),
-                       .what = fmt::format("the body is {:.3g} m across", size),
-                       .expected = "a size in metres; is the file in mm? Then scale = 0.001",
-                       .example = "scale = 0.001",
-                       .severity = Severity::warning});
+  try {  // first of all, and once: surfaces may take seconds to divide
+    scene.emplace(make_scene(c, grid ? &*grid : nullptr));
+    bodies = company_of(*scene).bodies;
+  } catch (const InputError& e) {
+    refusal = e.what();
+    bodies = bodies_one_by_one(c, found);
   }
-  if (!found.empty() || !flows) return found;
-  const Grid grid = make_grid(c);
-  found = check_bodies(c, grid, bodies);
-  if (std::none_of(found.begin(), found.end(),
-                   [](const Problem& p) { return p.severity == Severity::error; }))
-    check_belt(c, grid, found);
+  if (failed()) return found;
+  for (std::size_t n = 0; n < bodies.size(); ++n) ask_about_size(c.bodies[n], bodies[n], n, flows, found);
+  if (grid) {
+    const auto more = check_bodies(c, *grid, bodies);
+    found.insert(found.end(), more.begin(), more.end());
+  }
+  check_tables(c, found);
+  check_source_case(c, found);
+  if (failed()) return found;
+  if (!scene) {
+    add_refusal(c, refusal, found);
+    return found;
+  }
+  ask_about_walls(c, found);
+  const auto more = check_prospects(c, company_of(*scene), scene->splitter ? &*scene->splitter : nullptr);
+  found.insert(found.end(), more.begin(), more.end());
   return found;
 }
 

@@ -18,6 +18,9 @@ struct Reach {
 };
 Reach reach_of(const Body& body);
 
+/// Edges of the box along the axes that just holds a surface, m.
+Vec3 extent_of(const TriangleMesh& mesh);
+
 /// The width of a body that the fewest cells lie across, with the widest cells around its place.
 struct Resolution {
   double cells = 1e300;

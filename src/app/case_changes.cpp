@@ -21,6 +21,7 @@ std::map<std::string, std::string> values_of(const std::string& toml) {
   std::string section;
   std::istringstream lines(toml);
   for (std::string line; std::getline(lines, line);) {
+    if (line.starts_with("# ")) line.erase(0, 2);  // a default
     if (line.starts_with("[[")) {
       const std::string name = line.substr(2, line.find(']') - 2);
       section = fmt::format("{}.{}", name, repeated[name]++);

@@ -2,15 +2,22 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
+#include "app/assumptions.hpp"
 #include "app/body_checks.hpp"
 #include "app/flow_model.hpp"
 #include "app/forecast.hpp"
+#include "app/jet_source.hpp"
+#include "app/prospect.hpp"
+#include "app/scene.hpp"
 #include "base/units.hpp"
+#include "case/copies.hpp"
 #include "case/extent.hpp"
 #include "case/load.hpp"
 #include "case/words.hpp"
 #include "dem/body.hpp"
+#include "shape/stl.hpp"
 
 namespace ejecta {
 namespace {
@@ -35,6 +42,7 @@ double two_digits(double v) {
 }
 
 std::string time_words(double seconds) {
+  if (seconds == 0.0) return "0 ms";
   if (seconds < 1e-3) return fmt::format("{:.2g} us", 1e6 * seconds);
   return seconds < 1.0 ? fmt::format("{:.3g} ms", 1e3 * seconds) : fmt::format("{:.3g} s", seconds);
 }
@@ -65,19 +73,27 @@ std::string flow_part(const Case& c, double bandwidth) {
 /// What a surface from a file touches as.
 std::string parts_words(const Shape& shape) {
   if (!shape.balls().empty()) return fmt::format(", as {} spheres", shape.balls().size());
+  if (shape.polytopes().size() == 1) return ", convex";
   return fmt::format(", as {} convex parts, volume {:+.3f} %", shape.polytopes().size(),
                      100 * (shape.parts_volume() / shape.mass_properties().volume - 1));
 }
 
-/// Edges of the box in body axes that just holds it, and its mass.
+/// Edges of the box in body axes that just holds it, its volume and mass.
 std::string size_words(const Body& body) {
-  std::string text;
+  Vec3 size;
   for (int d = 0; d < 3; ++d) {
     const Vec3 along = Vec3::Unit(d);
-    const double size = along.dot(body.shape.support(along)) - along.dot(body.shape.support(-along));
-    text += fmt::format("{}{:.3g}", d == 0 ? "" : " x ", 1e3 * size);
+    size[d] = along.dot(body.shape.support(along)) - along.dot(body.shape.support(-along));
   }
-  return fmt::format("{} mm, {:.3g} g", text, 1e3 * body.mass);
+  const bool metres = size.maxCoeff() >= 1.0;
+  const double unit = metres ? 1.0 : 1e3, volume = body.shape.mass_properties().volume;
+  std::string text = fmt::format("{:.3g} x {:.3g} x {:.3g} {}, ", unit * size.x(), unit * size.y(),
+                                 unit * size.z(), metres ? "m" : "mm");
+  text += volume < 1e-9 ? fmt::format("{:.3g} mm3", 1e9 * volume)
+          : metres      ? fmt::format("{:.3g} m3", volume)
+                        : fmt::format("{:.3g} cm3", 1e6 * volume);
+  return text + (body.mass < 1.0 ? fmt::format(", {:.3g} g", 1e3 * body.mass)
+                                 : fmt::format(", {:.4g} kg", body.mass));
 }
 
 /// Where a prescribed body goes, and how fast.
@@ -102,17 +118,60 @@ std::string course_words(const Case& c, const Body& body) {
   return text + fmt::format(", to ({:.4g}, {:.4g}, {:.4g}) mm", 1e3 * at.x(), 1e3 * at.y(), 1e3 * at.z());
 }
 
-std::string body_part(const Case& c, const BodySpec& b, const Materials& materials) {
-  const Body body = make_body(b, materials, folder_of(c));
+std::string body_part(const Case& c, const Company& company, std::size_t n, const Splitter* plate) {
+  const BodySpec& b = c.bodies[n];
+  const Body& body = company.bodies[n];
   std::string text = fmt::format("  body         \"{}\", {}, {}: {}", b.name, word(b.shape), word(b.motion),
                                  size_words(body));
-  if (c.flow.solver != FlowSolver::none) {
+  const bool flows = c.flow.solver != FlowSolver::none;
+  if (flows) {
     const Vec3 at = b.on_belt ? place_of_interest(c, b) : body.position;
     text += fmt::format(", {}", resolution_words(resolution_of(make_grid(c), body, at), body));
   }
   if (!b.file.empty() || !b.files.empty()) text += parts_words(body.shape);
   if (body.course) text += course_words(c, body);
+  if (body.motion != Motion::fixed && (b.on_belt || plate || (flows && has_jet(c)))) {
+    const std::string prospects = prospect_words(prospect_of(c, company, n, plate), flows && has_jet(c));
+    if (!prospects.empty()) text += "\n               undisturbed: " + prospects;
+  }
   return text + "\n";
+}
+
+/// Surfaces from files alone: what stands in the case one sees there.
+std::string wall_part(const Case& c, const WallSpec& w) {
+  if (w.kind != WallKind::mesh) return "";
+  const TriangleMesh mesh = read_stl(beside_case(c, w.file), w.scale);
+  const Vec3 size = 1e3 * extent_of(mesh);
+  return fmt::format("  wall         \"{}\", {} triangles: {:.4g} x {:.4g} x {:.4g} mm\n", w.name,
+                     mesh.triangles.size(), size.x(), size.y(), size.z());
+}
+
+std::string valve_part(const Case& c) {
+  if (c.flow.solver == FlowSolver::none || !has_jet(c)) return "";
+  const ValveProspect v = prospect_of_valve(c);
+  std::string text =
+      fmt::format("  valve        {:.4g} kPa gauge, opens at {}, ",
+                  1e-3 * (c.valve.supply_pressure - c.environment.pressure), time_words(v.open.from));
+  if (v.widest > 0.999)
+    text +=
+        fmt::format("is fully open from {} to {}", time_words(v.widest_at.from), time_words(v.widest_at.to));
+  else text += fmt::format("opens to {:.0f} % at {}", 100 * v.widest, time_words(v.widest_at.from));
+  text += fmt::format(", shut at {}", time_words(v.open.to));
+  if (!c.valve.more_pulses.empty())
+    text += fmt::format(", and {} more pulse{}", c.valve.more_pulses.size(),
+                        c.valve.more_pulses.size() == 1 ? "" : "s");
+  return text + "\n";
+}
+
+std::string plate_part(const Case& c, const Splitter* plate) {
+  if (!plate) return "";
+  const Vec3 from_nozzle = plate->edge() - c.jet.nozzle;
+  const std::string at = fmt::format("  plate        edge at x, z = {:.4g}, {:.4g} mm from the nozzle, ",
+                                     1e3 * from_nozzle.x(), 1e3 * from_nozzle.z());
+  if (c.splitter.edge) return at + "fixed to the machine (splitter.edge)\n";
+  return at +
+         fmt::format("{:.4g} mm above the undisturbed path there, with which it moves (splitter.height)\n",
+                     1e3 * c.splitter.height);
 }
 
 }  // namespace
@@ -123,11 +182,20 @@ std::string check_report(const Case& c, const std::vector<Problem>& warnings, do
   if (c.flow.solver == FlowSolver::none)
     text += fmt::format("  flow         none, up to {}\n", format_quantity(c.run.end_time, Dimension::time));
   else text += flow_part(c, bandwidth);
-  const Materials materials(c);
-  for (const BodySpec& b : c.bodies) text += body_part(c, b, materials);
-  const std::vector<std::string> assumed = assumptions(c);
-  if (!assumed.empty()) text += "  assumptions in force:\n";
-  for (const std::string& a : assumed) text += fmt::format("    {}\n", a);
+  const Case all = with_first_copies(c);
+  std::optional<Grid> grid;
+  if (c.flow.solver != FlowSolver::none) grid.emplace(make_grid(c));
+  const Scene scene = make_scene(all, grid ? &*grid : nullptr);
+  const Splitter* plate = scene.splitter ? &*scene.splitter : nullptr;
+  const Company company = company_of(scene);
+  for (std::size_t n = 0; n < all.bodies.size(); ++n) text += body_part(all, company, n, plate);
+  for (const WallSpec& w : c.walls) text += wall_part(c, w);
+  text += valve_part(c) + plate_part(c, plate);
+  const std::vector<output::Assumption> assumed = assumptions(c);
+  if (!assumed.empty()) text += "  assumptions, since the case does not say:\n";
+  for (const output::Assumption& a : assumed)
+    text += fmt::format("    {} = {}  ({}{}{})\n", a.key, a.value, a.what, a.reason.empty() ? "" : ": ",
+                        a.reason);
   for (const Problem& p : warnings) text += render(p);
   return text;
 }

@@ -7,14 +7,11 @@
 
 #include "app/air_limits.hpp"
 #include "app/body_checks.hpp"
-#include "app/grid_walls.hpp"
 #include "app/jet_source.hpp"
 #include "base/error.hpp"
 #include "base/state_reader.hpp"
 #include "base/stopwatch.hpp"
 #include "case/copies.hpp"
-#include "dem/walls.hpp"
-#include "sorter/launch.hpp"
 
 namespace ejecta {
 namespace {
@@ -35,11 +32,11 @@ CoupledModel::CoupledModel(const Case& c)
     : case_(with_copies(c)),
       grid_(grid_of(c)),
       flow_(make_flow_model(case_, grid_)),
-      particles_(make_particles(case_)) {
+      scene_(make_scene(case_, flow_ ? &grid_ : nullptr)),
+      particles_(scene_.particles),
+      splitter_(scene_.splitter) {
   air_ = flow_ != nullptr;
-  if (flow_)
-    for (const Wall& wall : grid_walls(case_, grid_, particles_)) particles_.add(wall);
-  place_bodies();
+  draw_undisturbed(scene_.starts);
   const std::size_t n = particles_.bodies().size();
   loads_.resize(n);
   impulse_.assign(n, Vec3::Zero());
@@ -70,46 +67,19 @@ CouplingSetup CoupledModel::coupling_setup() const {
   return s;
 }
 
-void CoupledModel::place_bodies() {
-  const Vec3 nozzle = case_.jet.nozzle, gravity = case_.environment.gravity;
-  for (std::size_t b = 0; b < case_.bodies.size(); ++b) {
+/// Where bodies would be that no air touches: as far as the end of the plate.
+void CoupledModel::draw_undisturbed(const std::vector<FlightState>& starts) {
+  for (std::size_t b = 0; b < starts.size(); ++b) {
     const Body& body = particles_.bodies()[b];
-    if (case_.launch.enabled && case_.bodies[b].on_belt) {
-      const FlightState s = launch_state(case_.launch, nozzle, gravity, 0.0);
-      particles_.place(static_cast<int>(b), s.position, body.orientation, s.velocity, body.angular_velocity);
-    }
     start_velocity_.push_back(body.velocity);
     std::vector<Vec3> path;
-    const double reach = case_.splitter.enabled ? nozzle.x() + case_.splitter.distance + case_.splitter.length
-                                                : body.position.x();
+    const double reach = splitter_ ? splitter_->edge().x() + case_.splitter.length : body.position.x();
     const double flight =
         body.velocity.x() > 0.0 && !body.course ? (reach - body.position.x()) / body.velocity.x() : 0.0;
-    for (int p = 0; flight > 0.0 && p <= 60; ++p) {
-      const double t = flight * p / 60.0;
-      path.push_back(body.position + t * body.velocity + 0.5 * t * t * gravity);
-    }
+    for (int p = 0; flight > 0.0 && p <= 60; ++p)
+      path.push_back(free_flight(starts[b], case_.environment.gravity, flight * p / 60.0));
     undisturbed_.push_back(path);
   }
-  // What make_particles() could not look at: bodies from the belt, and the walls of the grid.
-  if (flow_ || case_.launch.enabled) particles_.require_apart();
-  if (!case_.splitter.enabled || particles_.bodies().empty()) return;
-  const double edge_x = nozzle.x() + case_.splitter.distance;
-  double height;
-  if (case_.launch.enabled) {
-    height = launch_height_at(case_.launch, nozzle, gravity, edge_x);
-  } else {
-    const Body& first = particles_.bodies()[0];
-    if (!(first.velocity.x() > 0.0))
-      throw InputError(fmt::format("splitter: body \"{}\" must fly towards +x to reach it", first.name));
-    const double t = (edge_x - first.position.x()) / first.velocity.x();
-    height = first.position.z() + t * first.velocity.z() + 0.5 * t * t * gravity.z();
-  }
-  splitter_.emplace(case_.splitter, nozzle, height, gravity.z());
-  splitter_->resize(particles_.bodies().size());
-  if (!case_.splitter.solid) return;
-  WallSpec plate = splitter_->wall();
-  if (plate.material.empty()) plate.material = case_.bodies.front().material;
-  particles_.add(make_wall(plate, particles_.materials(), ""));
 }
 
 void CoupledModel::check_bodies() const {

@@ -6,10 +6,9 @@
 #include <vector>
 
 #include "app/flow_model.hpp"
+#include "app/scene.hpp"
 #include "case/case.hpp"
 #include "coupling/resolved/resolved.hpp"
-#include "dem/particles.hpp"
-#include "sorter/splitter.hpp"
 
 namespace ejecta {
 
@@ -25,6 +24,7 @@ struct Operator {
 class CoupledModel {
  public:
   explicit CoupledModel(const Case& c);
+  CoupledModel(const CoupledModel&) = delete;  // its operators hold it
 
   double stable_dt(double time) const;
   void advance(double time, double dt);
@@ -33,6 +33,7 @@ class CoupledModel {
 
   const Case& config() const { return case_; }
   const Grid& grid() const { return grid_; }
+  const Scene& scene() const { return scene_; }
   FlowModel* flow() const { return flow_.get(); }
   const Particles& particles() const { return particles_; }
   const std::vector<Load>& loads() const { return loads_; }
@@ -64,7 +65,7 @@ class CoupledModel {
 
  private:
   CouplingSetup coupling_setup() const;
-  void place_bodies();
+  void draw_undisturbed(const std::vector<FlightState>& starts);
   void check_bodies() const;
   void build_step();
   void watch_air(double time);
@@ -74,10 +75,11 @@ class CoupledModel {
   const Case case_;  // copies of bodies written out
   Grid grid_;
   std::unique_ptr<FlowModel> flow_;
-  Particles particles_;
+  Scene scene_;
+  Particles& particles_;
   std::optional<ResolvedCoupling> coupling_;
   CutCells cut_;
-  std::optional<Splitter> splitter_;
+  std::optional<Splitter>& splitter_;
   std::vector<Operator> step_;
   std::vector<Load> loads_;
   std::vector<Vec3> impulse_, start_velocity_, before_, force_sum_, friction_sum_, torque_sum_;

@@ -10,7 +10,6 @@
 #include "base/parallel.hpp"
 #include "case/expression.hpp"
 #include "case/load.hpp"
-#include "case/schema.hpp"
 #include "dem/course.hpp"
 #include "flow/gas.hpp"
 #include "grid/grid.hpp"
@@ -188,24 +187,6 @@ double measured_bandwidth() {
     });
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return 3.0 * sizeof(float) * n * repeats / seconds;
-}
-
-std::vector<std::string> assumptions(const Case& original) {
-  Case c = original;
-  const auto in_force = [&](const std::string& section) {
-    if (section == "valve" || section == "jet") return has_flow(c) && has_jet(c);
-    if (section == "launch") return c.launch.enabled;
-    if (section == "splitter") return c.splitter.enabled;
-    return true;
-  };
-  std::vector<std::string> list;
-  for (const Section& s : sections(c)) {
-    if (s.repeated || !in_force(s.name)) continue;
-    for (const Key& key : s.keys(0))
-      if (key.source.starts_with("assumption"))
-        list.push_back(s.name + "." + key.name + " = " + value_text(key) + "  (" + key.source + ")");
-  }
-  return list;
 }
 
 }  // namespace ejecta

@@ -27,9 +27,6 @@ double expected_seconds(const Case& c, const Forecast& f, double bandwidth);
 /// Measured in about a tenth of a second, bytes/s.
 double measured_bandwidth();
 
-/// The assumptions in force: keys whose default is an assumption and that this case uses, with their values.
-std::vector<std::string> assumptions(const Case& c);
-
 /// All of it as the text of `ejecta check`, with the warnings of the case.
 std::string check_report(const Case& c, const std::vector<Problem>& warnings, double bandwidth);
 

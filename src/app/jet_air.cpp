@@ -112,9 +112,15 @@ class IncompressibleAir : public JetAir {
 }  // namespace
 
 std::unique_ptr<JetAir> make_jet_air(const Case& c, const Grid& grid) {
+  require_jet_air(c);
   if (c.flow.solver == FlowSolver::compressible) return std::make_unique<CompressibleAir>(c, grid);
-  if (c.flow.solver == FlowSolver::incompressible && c.jet.kind == JetKind::velocity_inlet)
-    return std::make_unique<IncompressibleAir>(c, grid);
+  return std::make_unique<IncompressibleAir>(c, grid);
+}
+
+void require_jet_air(const Case& c) {
+  if (c.flow.solver == FlowSolver::compressible ||
+      (c.flow.solver == FlowSolver::incompressible && c.jet.kind == JetKind::velocity_inlet))
+    return;
   throw InputError(
       "a jet is computed from its nozzle with flow.solver = \"compressible\", or incompressible with "
       "jet.kind = \"velocity-inlet\"");

@@ -34,7 +34,9 @@ class JetAir {
   virtual JetFlow flux(int i, int j, int k) const = 0;
 };
 
-/// The solver the case asks for. Throws InputError when it computes no jet.
+/// Throws InputError when the solver the case asks for computes no jet.
+void require_jet_air(const Case& c);
+/// That solver.
 std::unique_ptr<JetAir> make_jet_air(const Case& c, const Grid& grid);
 
 }  // namespace ejecta

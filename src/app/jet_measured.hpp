@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "base/units.hpp"
+#include "case/problem.hpp"
 
 namespace ejecta {
 
@@ -13,8 +14,11 @@ struct MeasuredCurve {
   std::vector<double> x, y;
 };
 
-/// Reads a CSV whose header names two columns with their units, as "z [mm],total_gauge [kPa]"; lines that
-/// start with # are remarks. Throws InputError with file, line and what was expected.
+/// Reads a CSV whose head gives its two columns their units, as "z [mm],total_gauge [kPa]" (see read_csv).
+/// What is wrong goes to `problems`.
+MeasuredCurve read_measured(const std::filesystem::path& file, Dimension position,
+                            std::vector<Problem>& problems);
+/// The same; throws InputError with file, line and what was expected.
 MeasuredCurve read_measured(const std::filesystem::path& file, Dimension position);
 
 /// What a computed curve reads at the places of a measured one.

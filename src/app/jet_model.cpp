@@ -21,20 +21,25 @@ PatchSpec orifice_of(const Case& c) {
 
 }  // namespace
 
+void require_jet_case(const Case& c) {
+  const PatchSpec orifice = orifice_of(c);
+  const double flowing = 0.5 * c.valve.orifice_diameter * std::sqrt(c.valve.discharge_coefficient);
+  if (std::abs(orifice.radius - flowing) > 1e-3 * flowing)
+    throw InputError(fmt::format(
+        "boundary.z_min.patch.0.radius is {:.4g} mm, but what flows through valve.orifice_diameter = {:.4g} "
+        "mm with "
+        "valve.discharge_coefficient = {:.3g} is a disc of radius {:.4g} mm",
+        1e3 * orifice.radius, 1e3 * c.valve.orifice_diameter, c.valve.discharge_coefficient, 1e3 * flowing));
+  require_jet_air(c);
+}
+
 JetModel::JetModel(const Case& c)
-    : case_(c),
+    : case_((require_jet_case(c), c)),
       grid_(make_grid(c)),
       drive_(case_),
       gas_{c.fluid.gamma, c.fluid.gas_constant},
       orifice_(orifice_of(c)),
       air_(make_jet_air(case_, grid_)) {
-  const double flowing = 0.5 * orifice_diameter() * std::sqrt(c.valve.discharge_coefficient);
-  if (std::abs(orifice_.radius - flowing) > 1e-3 * flowing)
-    throw InputError(fmt::format(
-        "boundary.z_min.patch.0.radius is {:.4g} mm, but what flows through valve.orifice_diameter = {:.4g} "
-        "mm with "
-        "valve.discharge_coefficient = {:.3g} is a disc of radius {:.4g} mm",
-        1e3 * orifice_.radius, 1e3 * orifice_diameter(), c.valve.discharge_coefficient, 1e3 * flowing));
   if (grid_.axisymmetric()) around_ = 2.0 * std::numbers::pi;
   for (int d = 0; d < 2; ++d)
     if (!grid_.axisymmetric() && grid_.active(d) && std::abs(grid_.lower()[d] - orifice_.centre[d]) < 1e-9)

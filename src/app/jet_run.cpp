@@ -67,10 +67,11 @@ JetRun::JetRun(const Case& c, double kept_at, const RunOptions& options)
       directory_(output::RunDirectory::create(options.out.empty() ? output::RunDirectory::default_path(c.path)
                                                                   : std::filesystem::path(options.out),
                                               options.force)),
-      provenance_{.command = "ejecta jet " + c.path,
+      provenance_{.command = command_line_of("jet", c, options),
                   .case_path = c.path,
                   .input = write_case(c),
-                  .threads = thread_count()},
+                  .threads = thread_count(),
+                  .overrides = options.overrides},
       lines_(output::provenance_lines(provenance_)),
       orifice_(directory_, lines_),
       momentum_(jet_),

@@ -69,10 +69,11 @@ int sweep_jet(const Case& original, const RunOptions& options) {
   const auto directory = output::RunDirectory::create(
       options.out.empty() ? output::RunDirectory::default_path(c.path) : std::filesystem::path(options.out),
       options.force);
-  const output::Provenance provenance{.command = "ejecta jet --sweep " + c.path,
+  const output::Provenance provenance{.command = command_line_of("jet --sweep", c, options),
                                       .case_path = c.path,
                                       .input = write_case(c),
-                                      .threads = thread_count()};
+                                      .threads = thread_count(),
+                                      .overrides = options.overrides};
   directory.write_case(provenance.input);
   directory.write_manifest(output::make_manifest(provenance));
   const auto note = [&](const std::string& line) {

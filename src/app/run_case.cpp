@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <iostream>
@@ -28,6 +30,32 @@
 namespace ejecta {
 namespace {
 
+/// Where a run goes.
+std::filesystem::path directory_of(const Case& c, const RunOptions& options) {
+  return options.out.empty() ? output::RunDirectory::default_path(c.path)
+                             : std::filesystem::path(options.out);
+}
+
+void print_verdict(const nlohmann::ordered_json& result, const std::filesystem::path& run) {
+  fmt::print("{}\n", output::verdict_sentence(result));
+  fmt::print("results: {}\n", (run / "result.json").string());
+  if (std::filesystem::exists(run / "report.html"))
+    fmt::print("report:  {}\n", (run / "report.html").string());
+}
+
+/// The result of a run that came to the end of this very case before.
+std::optional<nlohmann::ordered_json> finished_result(const std::filesystem::path& run,
+                                                      const std::string& input) {
+  std::error_code none;
+  if (!std::filesystem::exists(run / "result.json", none) || output::read_file(run / "case.toml") != input)
+    return std::nullopt;
+  try {
+    return nlohmann::ordered_json::parse(output::read_file(run / "result.json"));
+  } catch (const nlohmann::json::exception&) {
+    return std::nullopt;  // cut: the run was ended as it wrote it
+  }
+}
+
 /// How often a run looks for NaN, in steps.
 constexpr int kCheckInterval = 20;
 
@@ -43,10 +71,11 @@ class Run {
                                   : output::RunDirectory::create(path_, options.force)),
         store_(directory_.checkpoints()),
         progress_(std::cerr, progress_options()) {
-    provenance_ = {.command = "ejecta run " + c.path,
+    provenance_ = {.command = command_line_of("run", c, options),
                    .case_path = c.path,
                    .input = write_case(with_absolute_files(c)),
-                   .threads = thread_count()};
+                   .threads = thread_count(),
+                   .overrides = options.overrides};
     std::optional<double> resumed;
     if (options.resume) {
       refuse_another_case();
@@ -61,8 +90,11 @@ class Run {
     outputs_->add_events(clock_, c.run.end_time);
     clock_.add_events_every(c.checkpoint.every_time, 0.0, c.run.end_time);
     // A verdict comes in free flight, which costs nothing: what is left to wait for is the air.
-    busy_until_ = std::min(c.run.end_time, air_until(c));
-    if (resumed) restore();
+    busy_until_ = std::min(c.run.end_time, air_until(c, company_of(model_.scene())));
+    if (resumed) {
+      restore();
+      directory_.remove_result();
+    }
   }
 
   int advance_to_end() {
@@ -86,16 +118,14 @@ class Run {
       }
       if (stop) {
         progress_.finish(progress_state(dt), "stopped");
-        progress_.note(
-            fmt::format("continue with\n  ejecta run {} --out {} --resume", case_.path, path_.string()));
+        progress_.note(fmt::format("continue with\n  {} --resume", command()));
         return exit_stopped;
       }
     }
     model_.require_finite(clock_.time());
     outputs_->finish(clock_.time());
     progress_.finish(progress_state(0.0), "done");
-    conclude();
-    return exit_done;
+    return conclude();
   }
 
   /// Leaves the reason in progress.json, if that can still be written.
@@ -109,8 +139,7 @@ class Run {
  private:
   /// Refuses at once a place where the run could not be kept: its model may take minutes to build.
   static std::filesystem::path path_of(const Case& c, const RunOptions& options) {
-    const auto path =
-        options.out.empty() ? output::RunDirectory::default_path(c.path) : std::filesystem::path(options.out);
+    const auto path = directory_of(c, options);
     if (options.resume) output::RunDirectory::open(path);
     else output::RunDirectory::require_creatable(path, options.force);
     return path;
@@ -179,9 +208,8 @@ class Run {
     if (changed.empty()) return;
     throw InputError(fmt::format(
         "{} was started with another case: {} changed\n  go on as it was:  ejecta run {} --out {} --resume\n"
-        "  start anew:       ejecta run {} --out {} --force",
-        path_.string(), joined(changed), (path_ / "case.toml").string(), path_.string(), case_.path,
-        path_.string()));
+        "  start anew:       {} --force",
+        path_.string(), joined(changed), (path_ / "case.toml").string(), path_.string(), command()));
   }
 
   std::optional<double> find_checkpoint() {
@@ -199,8 +227,8 @@ class Run {
     try {
       read_checkpoint();
     } catch (const Error& e) {
-      throw InputError(fmt::format("{} cannot be resumed: {}\n  start anew:  ejecta run {} --out {} --force",
-                                   path_.string(), e.what(), case_.path, path_.string()));
+      throw InputError(fmt::format("{} cannot be resumed: {}\n  start anew:  {} --force", path_.string(),
+                                   e.what(), command()));
     }
     reader_.reset();
   }
@@ -218,19 +246,48 @@ class Run {
     clock_.restore(reader_->at().time, reader_->at().step);
   }
 
-  void conclude() {
+  /// Writes and prints the result. Returns an ExitCode: done only if every body has its verdict.
+  int conclude() {
     nlohmann::ordered_json result =
         make_result(model_, clock_.time(), clock_.step(), wall_, operator_times());
     outputs_->report(result);
+    const bool decided = output::undecided_bodies(result).empty();
+    if (!decided) write_checkpoint();  // from which a later end goes on
     directory_.write_result(result);
     for (const std::string& dent : model_.particles().deep_dents()) fmt::print(stderr, "warning: {}\n", dent);
     if (case_.output.report) output::write_report(path_);
-    if (options_.quiet) return;
-    if (options_.verbose || model_.flow())
-      fmt::print("{}\n", output::operator_table(operator_times(), wall_));
-    fmt::print("{}\n", output::verdict_sentence(result));
-    fmt::print("results: {}\n", (path_ / "result.json").string());
-    if (case_.output.report) fmt::print("report:  {}\n", (path_ / "report.html").string());
+    if (!options_.quiet) {
+      if (options_.verbose || model_.flow())
+        fmt::print("{}\n", output::operator_table(operator_times(), wall_));
+      print_verdict(result, path_);
+    }
+    if (decided) return exit_done;
+    if (const auto later = later_end()) {
+      RunOptions o = options_;
+      o.overrides.push_back(fmt::format("run.end_time={:.0f} ms", 1e3 * *later));
+      progress_.note(fmt::format("go on with\n  {} --resume", command(o)));
+    }
+    return exit_undecided;
+  }
+
+  /// When the last undecided body that flies on should have come to the plate, with half as much again, s.
+  std::optional<double> later_end() const {
+    double latest = 0.0;
+    const auto bodies = model_.particles().bodies();
+    for (std::size_t b = 0; b < bodies.size(); ++b) {
+      if (!model_.splitter()->judges(b) || model_.splitter()->verdict(b)) continue;
+      const double way = model_.splitter()->edge().x() - bodies[b].position.x();
+      if (bodies[b].velocity.x() > 0.0) latest = std::max(latest, way / bodies[b].velocity.x());
+    }
+    if (!(latest > 0.0) || latest > 100.0) return std::nullopt;
+    return std::ceil(1e3 * (clock_.time() + 1.5 * latest)) * 1e-3;
+  }
+
+  /// What the user typed, with the place of the run: the same with --resume goes on.
+  std::string command() const { return command(options_); }
+  std::string command(RunOptions o) const {
+    o.out = path_.string();
+    return command_line_of("run", case_, o);
   }
 
   const Case& case_;
@@ -264,6 +321,15 @@ int run_case(const Case& c, const RunOptions& options) {
     if (!options.quiet) print_step(model);
     return exit_done;
   }
+  if (options.resume)
+    if (const auto path = directory_of(c, options); std::filesystem::exists(path / "case.toml"))
+      if (const auto result = finished_result(path, write_case(with_absolute_files(c)))) {
+        if (!options.quiet) {
+          fmt::print("{} is finished: nothing to compute\n", path.string());
+          print_verdict(*result, path);
+        }
+        return output::undecided_bodies(*result).empty() ? exit_done : exit_undecided;
+      }
   Run run(c, options);
   try {
     return run.advance_to_end();

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "app/jet_source.hpp"
+#include "app/assumptions.hpp"
 #include "app/spacing.hpp"
 #include "base/parallel.hpp"
 #include "case/expression.hpp"
@@ -61,7 +61,7 @@ Json body_json(const CoupledModel& m, std::size_t b) {
           m.mean_torque(b).norm() / (std::abs(drag) * 2.0 * body.shape.bounding_radius());
     }
   }
-  if (m.splitter()) {
+  if (m.splitter() && m.splitter()->judges(b)) {
     if (const auto& v = m.splitter()->verdict(b)) {
       j["outcome"] = v->ejected ? "ejected" : "not ejected";
       j["clearance_at_splitter_m"] = v->clearance;
@@ -69,6 +69,14 @@ Json body_json(const CoupledModel& m, std::size_t b) {
       j["time_at_splitter_s"] = v->time;
     } else {
       j["outcome"] = "undecided";
+    }
+    if (const auto wanted = c.bodies[b].wanted) {
+      j["wanted"] = *wanted;
+      const bool ejected = j["outcome"] == "ejected";
+      j["judgement"] = j["outcome"] == "undecided" ? "undecided"
+                       : ejected == *wanted        ? "right"
+                       : ejected                   ? "by-catch"
+                                                   : "missed";
     }
   }
   return j;
@@ -130,38 +138,6 @@ void add_errors(const CoupledModel& m, double time, Json& result) {
 
 }  // namespace
 
-std::vector<output::Assumption> assumptions_of(const Case& c) {
-  std::vector<output::Assumption> a;
-  if (has_jet(c)) {
-    a.push_back({"Diameter of the orifice", fmt::format("{:.3g} mm", c.valve.orifice_diameter * 1e3),
-                 "The paper does not give it; its 880 m/s, 75 mm and Mach 0.35 imply 1.55 to 1.9 mm with "
-                 "measured jet constants",
-                 "valve.orifice_diameter"});
-    a.push_back({"Opening of the valve",
-                 fmt::format("{:.3g} ms to open, {:.3g} ms to close", c.valve.rise_time * 1e3,
-                             c.valve.fall_time * 1e3),
-                 "The measured pressure at 75 mm peaks 6 to 7 ms after the command, while the jet's head "
-                 "needs 0.5 ms",
-                 "valve.rise_time"});
-    if (c.jet.kind == JetKind::self_similar)
-      a.push_back({"Air entering the box",
-                   fmt::format("self-similar round jet, spreading {:.3g}", c.jet.spreading),
-                   "Measured jet constants (Hussein, Capp & George 1994), with the thrust of the valve",
-                   "jet.spreading"});
-  }
-  if (c.splitter.enabled)
-    a.push_back({"Edge of the dividing plate",
-                 fmt::format("{:.0f} mm behind the jet, {:.0f} mm above the undisturbed path",
-                             c.splitter.distance * 1e3, c.splitter.height * 1e3),
-                 "The paper does not give it; one position for all particles separates its ejected from its "
-                 "kept ones",
-                 "splitter.height"});
-  if (c.launch.enabled)
-    a.push_back({"Way from the belt to the jet", fmt::format("{:.0f} mm", c.launch.drop_distance * 1e3),
-                 "The paper measured it but does not give it", "launch.drop_distance"});
-  return a;
-}
-
 Json make_result(const CoupledModel& m, double time, std::int64_t steps, double wall_time,
                  std::span<const output::OperatorTime> operators) {
   const Case& c = m.config();
@@ -169,7 +145,14 @@ Json make_result(const CoupledModel& m, double time, std::int64_t steps, double 
   r["title"] = c.run.title;
   Json bodies = Json::array();
   for (std::size_t b = 0; b < m.particles().bodies().size(); ++b) bodies.push_back(body_json(m, b));
-  if (m.splitter() && !bodies.empty()) r["outcome"] = bodies[0]["outcome"];
+  if (m.splitter()) {
+    for (const Json& body : bodies)
+      if (body.contains("outcome") && !r.contains("outcome")) r["outcome"] = body["outcome"];
+    const Vec3 edge = m.splitter()->edge() - c.jet.nozzle;
+    r["plate"] = {{"edge_from_nozzle_m", {edge.x(), edge.z()}},
+                  {"given_as", c.splitter.edge ? "fixed to the machine" : "above the undisturbed path"}};
+    if (!c.splitter.edge) r["plate"]["height_above_path_m"] = c.splitter.height;
+  }
   if (!bodies.empty()) r["bodies"] = bodies;
   if (const auto dents = m.particles().deep_dents(); !dents.empty()) r["warnings"] = dents;
   r["cells"] = m.flow() ? m.grid().cells() : 0;
@@ -200,7 +183,7 @@ Json make_result(const CoupledModel& m, double time, std::int64_t steps, double 
   for (const output::OperatorTime& op : operators)
     r["operators"].push_back(
         {{"name", op.name}, {"equation", op.equation}, {"seconds", op.seconds}, {"calls", op.calls}});
-  for (const auto& a : assumptions_of(c))
+  for (const auto& a : assumptions(c))
     r["assumptions"].push_back({{"what", a.what}, {"value", a.value}, {"reason", a.reason}, {"key", a.key}});
   return r;
 }

@@ -10,7 +10,4 @@ namespace ejecta {
 nlohmann::ordered_json make_result(const CoupledModel& model, double time, std::int64_t steps,
                                    double wall_time, std::span<const output::OperatorTime> operators);
 
-/// What the run takes for granted that the user should know.
-std::vector<output::Assumption> assumptions_of(const Case& c);
-
 }  // namespace ejecta

@@ -1,5 +1,6 @@
 #pragma once
 #include <string>
+#include <vector>
 
 #include "case/case.hpp"
 
@@ -12,6 +13,7 @@ struct RunOptions {
   bool force = false;    ///< overwrite a run directory
   bool dry_run = false;  ///< set everything up, take no step
   bool quiet = false, verbose = false;
+  std::vector<std::string> overrides{};  ///< what --set changed, "section.key=value"
   bool sweep = false;  ///< `ejecta jet`: the jets of jet.sweep_pressures and jet.sweep_velocities instead
 };
 
@@ -20,6 +22,9 @@ struct BenchOptions {
   int steps = 20;    ///< timed steps
   std::string only;  ///< "dem": bodies that touch; "settled": of these only settled spheres
 };
+
+/// "ejecta COMMAND CASE --set ...", as a shell takes it: what gives this run again.
+std::string command_line_of(const std::string& command, const Case& c, const RunOptions& options);
 
 /// Runs a case into its run directory. Returns an ExitCode.
 int run_case(const Case& c, const RunOptions& options);

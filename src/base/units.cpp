@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <numbers>
@@ -37,7 +38,11 @@ std::vector<Unit> pressure_units() {
           {"mbar", 1e2},
           {"bar", 1e5},
           {"atm", 101325.0},
-          {"psi", psi}};
+          {"psi", psi},
+          {"N/m2", 1},
+          {"N/mm2", 1e6},
+          {"mmHg", 133.322387415},
+          {"Torr", 101325.0, 760.0}};
 }
 
 const std::vector<Entry>& table() {
@@ -58,7 +63,7 @@ const std::vector<Entry>& table() {
       {volume,
        "a volume",
        "1 cm3",
-       {{"m3", 1, 1, 0, true}, {"mm3", 1, 1e9, 0, true}, {"cm3", 1, 1e6}, {"L", 1, 1e3}}},
+       {{"m3", 1, 1, 0, true}, {"mm3", 1, 1e9, 0, true}, {"cm3", 1, 1e6}, {"L", 1, 1e3}, {"mL", 1, 1e6}}},
       {time,
        "a time",
        "8 ms",
@@ -147,6 +152,42 @@ bool is_referred(Dimension d) { return d == Dimension::pressure_gauge || d == Di
 
 constexpr std::string_view gauge = "gauge", absolute = "absolute";
 
+void replace_all(std::string& text, std::string_view from, std::string_view to) {
+  for (std::size_t at = 0; (at = text.find(from, at)) != std::string::npos; at += to.size())
+    text.replace(at, from.size(), to);
+}
+
+/// A unit as the table has it, of one as instruments and people write it: "µm", "kg/m³", "N/mm^2", "°C",
+/// "barg", "psia", "kPa(g)".
+std::string plain_unit(std::string_view written) {
+  static constexpr std::pair<std::string_view, std::string_view> signs[] = {
+      {"\u00b5", "u"}, {"\u03bc", "u"}, {"\u00b2", "2"},        {"\u00b3", "3"},  {"\u207b\u00b9", "-1"},
+      {"^", ""},       {"\u00b7", " "}, {"\u22c5", " "},        {"*", " "},       {"\u00a0", " "},
+      {"\u202f", " "}, {"\u2009", " "}, {"\u2032\u2032", "in"}, {"\u2033", "in"}, {"\"", "in"},
+      {"\u2103", "C"}, {"\u2109", "F"}};
+  std::string unit(trim(written));
+  for (const auto& [from, to] : signs) replace_all(unit, from, to);
+  if (unit == "\u00b0" || unit == "\u00ba") return "deg";
+  replace_all(unit, "\u00b0 ", "");
+  replace_all(unit, "\u00b0", unit.starts_with("\u00b0/") ? "deg" : "");
+  for (const Unit& u : pressure_units())
+    for (const auto& [word, shorts] :
+         {std::pair{gauge, std::array<std::string_view, 5>{"g", " g", "(g)", " (g)", "_g"}},
+          std::pair{absolute, std::array<std::string_view, 5>{"a", " a", "(a)", " (a)", "_a"}}})
+      for (const std::string_view end : shorts)
+        if (unit == std::string(u.name).append(end)) return fmt::format("{} {}", u.name, word);
+  for (const auto& [from, to] : {std::pair{" abs", absolute},
+                                 {" (abs)", absolute},
+                                 {"(abs)", absolute},
+                                 {" abs.", absolute},
+                                 {" (gauge)", gauge},
+                                 {"(gauge)", gauge},
+                                 {" (absolute)", absolute}})
+    if (unit.ends_with(from) && unit.size() > std::string_view(from).size())
+      return fmt::format("{} {}", trim(unit.substr(0, unit.size() - std::string_view(from).size())), to);
+  return std::string(trim(unit));
+}
+
 /// Takes the word "gauge" or "absolute" off the end of a unit.
 std::string_view take_reference(std::string_view& unit) {
   for (std::string_view word : {gauge, absolute})
@@ -198,7 +239,9 @@ std::string unit_words(Dimension d) {
 std::string_view describe(Dimension d) { return entry(d).words; }
 std::string_view example(Dimension d) { return entry(d).example; }
 
-std::optional<double> to_si(double value, std::string_view unit, Dimension d) {
+std::optional<double> to_si(double value, std::string_view written, Dimension d) {
+  const std::string plain = plain_unit(written);
+  std::string_view unit = plain;
   if (is_referred(d) && take_reference(unit) != (d == Dimension::pressure_gauge ? gauge : absolute))
     return std::nullopt;
   const Unit* u = find_unit(unit, d);
@@ -206,16 +249,37 @@ std::optional<double> to_si(double value, std::string_view unit, Dimension d) {
   return apply(*u, value);
 }
 
+std::string with_decimal_point(std::string_view text) {
+  const auto digit = [&](std::size_t n) { return n < text.size() && text[n] >= '0' && text[n] <= '9'; };
+  const auto comma = text.find(',');
+  if (comma == std::string_view::npos || comma == 0 || !digit(comma - 1) || !digit(comma + 1) ||
+      text.find(',', comma + 1) != std::string_view::npos)
+    return "";
+  // "1,500" may be a thousand and a half as well: that is not for us to say. "0,500" is not.
+  const bool thousands = digit(comma + 2) && digit(comma + 3) && !digit(comma + 4);
+  const bool from_zero = text[comma - 1] == '0' && (comma < 2 || !digit(comma - 2));
+  if (thousands && !from_zero) return "";
+  std::string point(text);
+  point[comma] = '.';
+  return point;
+}
+
 double parse_quantity(std::string_view text, Dimension d, double ambient) {
   const auto [value, rest] = split(text);
   if (!value) throw InputError(fmt::format("\"{}\" does not start with a finite number", text));
   if (rest.empty())
     throw InputError(fmt::format("\"{}\" has no unit (known units: {})", text, unit_words(d)));
-  std::string_view unit = rest;
+  if (rest.starts_with(','))
+    throw InputError(fmt::format(
+        "\"{}\" has a comma in its number; a number has a decimal point{} and no sign "
+        "between thousands",
+        text, with_decimal_point(text).empty() ? "" : fmt::format(" (\"{}\")", with_decimal_point(text))));
+  const std::string plain = plain_unit(rest);
+  std::string_view unit = plain;
   const std::string_view reference = take_reference(unit);
   const Unit* u = find_unit(unit, d);
   if (!u) {
-    const std::string close = nearest(rest, known_units(d));
+    const std::string close = nearest(plain, known_units(d));
     throw InputError(fmt::format("unknown unit \"{}\"{} (known units: {})", rest,
                                  close.empty() ? "" : fmt::format(", nearest is \"{}\"", close),
                                  unit_words(d)));

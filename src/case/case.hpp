@@ -2,6 +2,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -217,6 +218,11 @@ struct BodySpec {
   double rotation_angle = 0.0;  ///< rad
   double release_at = 0.0;      ///< s, body rests as placed until then
   bool on_belt = false;         ///< placed by [launch] instead of position/velocity
+  double along = 0.0;           ///< m, on the belt, ahead of where [launch] has it (+x)
+  double across = 0.0;          ///< m, on the belt, beside it (+y)
+  std::string behind;           ///< on the belt: name of the body that goes ahead of it
+  double gap = 0.0;             ///< m, to that body, between the two surfaces along x
+  std::optional<bool> wanted;   ///< whether it ought to be ejected
   /// s, not there before, and not while another body is in its place; unset: there from the start
   std::optional<double> enters_at;
   int copies = 1;        ///< copies; more than one enter one after the other
@@ -241,18 +247,23 @@ struct LaunchSpec {
 struct WallSpec {
   std::string name;
   WallKind kind = WallKind::plane;
-  Vec3 point{0, 0, 0};
+  Vec3 point{0, 0, 0};     ///< m; mesh: where the origin of its file lies
   Vec3 normal{0, 0, 1};    ///< towards the bodies
   Vec3 size{0, 0, 0};      ///< plate: extents along its two tangents and thickness; box: edges
   Vec3 velocity{0, 0, 0};  ///< surface velocity (belt)
   std::string material;
-  std::string file;        ///< mesh
-  bool two_sided = false;  ///< mesh that is open: bodies meet its back too
+  std::string file;             ///< mesh
+  double scale = 1.0;           ///< of the mesh
+  Vec3 rotation_axis{0, 0, 1};  ///< mesh and box, about `point`
+  double rotation_angle = 0.0;  ///< rad
+  bool two_sided = false;       ///< mesh that is open: bodies meet its back too
 };
 
 /// [splitter]: the dividing plate. A body is ejected when its centre passes above the edge.
 struct SplitterSpec {
   bool enabled = false;
+  /// m, x and z of the edge from jet.nozzle: a plate that is bolted to the machine. Else:
+  std::optional<std::array<double, 2>> edge;
   double distance = 0.25;   ///< m, +x from the jet's axis to the edge
   double height = 0.035;    ///< m, edge above the path of the undisturbed body there
   double thickness = 2e-3;  ///< m
@@ -342,7 +353,8 @@ struct DomainSpec {
 };
 
 struct Case {
-  std::string path;  ///< of the file it came from; relative names inside are relative to it
+  std::string path;             ///< of the file it came from; relative names inside are relative to it
+  std::set<std::string> given;  ///< keys that the user wrote, e.g. "valve.rise_time", "body.0.size"
   RunSpec run;
   EnvironmentSpec environment;
   FluidSpec fluid;

@@ -28,6 +28,15 @@ Quat any_rotation(Random& random) {
 
 }  // namespace
 
+Case with_first_copies(const Case& c) {
+  Case first = c;
+  for (BodySpec& b : first.bodies) {
+    if (b.copies > 1 && !b.enters_at) b.enters_at = 0.0;
+    b.copies = 1;
+  }
+  return with_copies(first);
+}
+
 Case with_copies(const Case& c) {
   Case out = c;
   out.bodies.clear();

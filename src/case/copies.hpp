@@ -7,4 +7,7 @@ namespace ejecta {
 /// in the box `spread` and, if asked for, orientation. The same case gives the same copies.
 Case with_copies(const Case& c);
 
+/// The same with the first of the copies alone: what one looks at before a run, however many there will be.
+Case with_first_copies(const Case& c);
+
 }  // namespace ejecta

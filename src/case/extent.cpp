@@ -111,7 +111,7 @@ Vec3 half_extent(const BodySpec& b) {
 
 Vec3 place_of_interest(const Case& c, const BodySpec& b) {
   if (!b.on_belt) return b.position;
-  return c.jet.nozzle + Vec3(0.0, c.launch.offset_across, c.launch.stand_off);
+  return c.jet.nozzle + Vec3(0.0, c.launch.offset_across + b.across, c.launch.stand_off);
 }
 
 }  // namespace ejecta

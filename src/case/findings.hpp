@@ -26,7 +26,7 @@ struct Findings {
 void sense_run(const Case&, Findings&);
 void sense_grid(const Case&, Findings&);
 void sense_boundaries(const Case&, Findings&);
-void sense_turbulence(const Case&, Findings&);
+void sense_states(const Case&, Findings&);
 void sense_materials(const Case&, Findings&);
 void sense_shapes(const Case&, Findings&);
 void sense_motion(const Case&, Findings&);
@@ -35,6 +35,7 @@ void sense_overlaps(const Case&, Findings&);
 void sense_walls(const Case&, Findings&);
 void sense_sorter(const Case&, Findings&);
 void sense_records(const Case&, Findings&);
+void sense_idle(const Case&, Findings&);
 void sense_expectations(const Case&, Findings&);
 
 }  // namespace ejecta

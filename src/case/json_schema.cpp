@@ -33,6 +33,7 @@ struct TypeOf {
   Json one_or_more(const Json& item) const { return {{"anyOf", {item, list_of(item)}}}; }
 
   Json operator()(const bool*) const { return {{"type", "boolean"}}; }
+  Json operator()(const std::optional<bool>*) const { return {{"type", "boolean"}}; }
   Json operator()(const int*) const { return integer(); }
   Json operator()(const std::int64_t*) const { return integer(); }
   Json operator()(const double*) const { return number(); }
@@ -44,6 +45,7 @@ struct TypeOf {
   Json operator()(const std::vector<std::string>*) const { return one_or_more(text()); }
   Json operator()(const std::array<int, 3>*) const { return list_of(integer(), 3); }
   Json operator()(const std::array<double, 2>*) const { return list_of(number(), 2); }
+  Json operator()(const std::optional<std::array<double, 2>>*) const { return list_of(number(), 2); }
   Json operator()(const std::vector<std::array<double, 4>>*) const { return list_of(list_of(number(), 4)); }
   Json operator()(const std::vector<Vec3>*) const { return list_of(list_of(number(), 3)); }
   Json operator()(const std::optional<std::array<Vec3, 2>>*) const {

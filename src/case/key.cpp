@@ -41,6 +41,7 @@ std::string formula_text(const std::string& text, Dimension d) {
 struct ValueText {
   Dimension d;
   std::string operator()(const bool* v) const { return *v ? "true" : "false"; }
+  std::string operator()(const std::optional<bool>* v) const { return *v ? (*this)(&**v) : ""; }
   std::string operator()(const int* v) const { return fmt::format("{}", *v); }
   std::string operator()(const std::int64_t* v) const { return fmt::format("{}", *v); }
   std::string operator()(const double* v) const { return scalar(*v, d); }
@@ -54,6 +55,9 @@ struct ValueText {
   }
   std::string operator()(const std::array<int, 3>* v) const { return integers(*v); }
   std::string operator()(const std::array<double, 2>* v) const { return numbers(*v); }
+  std::string operator()(const std::optional<std::array<double, 2>>* v) const {
+    return *v ? numbers(**v) : "";
+  }
   std::string operator()(const std::vector<std::array<double, 4>>* v) const {
     return v->empty() ? "" : bracketed(*v, [&](const auto& s) { return numbers(s); });
   }
@@ -109,6 +113,7 @@ struct TypeWords {
     return d == Dimension::none ? "numbers" : fmt::format("quantities in {}", unit_words(d));
   }
   std::string operator()(const bool*) const { return "true or false"; }
+  std::string operator()(const std::optional<bool>*) const { return "true or false"; }
   std::string operator()(const int*) const { return "a whole number"; }
   std::string operator()(const std::int64_t*) const { return "a whole number"; }
   std::string operator()(const double*) const { return one() + units(); }
@@ -120,6 +125,9 @@ struct TypeWords {
   std::string operator()(const std::vector<std::string>*) const { return "a list of texts"; }
   std::string operator()(const std::array<int, 3>*) const { return "a list of 3 whole numbers"; }
   std::string operator()(const std::array<double, 2>*) const { return "a list of 2 " + many(); }
+  std::string operator()(const std::optional<std::array<double, 2>>*) const {
+    return "a list of 2 " + many();
+  }
   std::string operator()(const std::vector<std::array<double, 4>>*) const {
     return "a list of lists of 4 " + many();
   }

@@ -51,10 +51,11 @@ struct VectorOrFormulas {
 
 /// Where the value of a key goes.
 using Slot =
-    std::variant<bool*, int*, std::int64_t*, double*, std::optional<double>*, std::string*, Vec3*,
-                 std::vector<double>*, std::vector<int>*, std::vector<std::string>*, std::array<int, 3>*,
-                 std::array<double, 2>*, std::vector<std::array<double, 4>>*, std::vector<Vec3>*,
-                 std::optional<std::array<Vec3, 2>>*, Choice, Formula, Formulas, VectorOrFormulas>;
+    std::variant<bool*, std::optional<bool>*, int*, std::int64_t*, double*, std::optional<double>*,
+                 std::string*, Vec3*, std::vector<double>*, std::vector<int>*, std::vector<std::string>*,
+                 std::array<int, 3>*, std::array<double, 2>*, std::optional<std::array<double, 2>>*,
+                 std::vector<std::array<double, 4>>*, std::vector<Vec3>*, std::optional<std::array<Vec3, 2>>*,
+                 Choice, Formula, Formulas, VectorOrFormulas>;
 
 /// One entry of the schema, bound to one struct. Everything that is known of a key is here, and only here.
 struct Key {
@@ -67,7 +68,13 @@ struct Key {
   std::string unset{};   ///< what the default means in words, e.g. "ambient"; empty: the default as it is
   bool required = false;
   std::string example{};  ///< a value that works, as TOML; empty: made from the default or the dimension
+  bool decisive = false;  ///< its default decides the result: an assumption until the user sets it
 };
+
+inline Key decisive(Key key) {
+  key.decisive = true;
+  return key;
+}
 
 template <class E>
 Choice choice(E& e) {

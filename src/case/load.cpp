@@ -41,6 +41,25 @@ std::string read_file(const std::string& path) {
   return text;
 }
 
+/// The first byte from `n` on that is no part of a sign in UTF-8; the size of the text if there is none.
+std::size_t first_not_utf8(std::string_view text, std::size_t n = 0) {
+  const auto byte = [&](std::size_t n) { return n < text.size() ? static_cast<unsigned char>(text[n]) : 0u; };
+  while (n < text.size()) {
+    const unsigned first = byte(n);
+    const std::size_t length = first < 0x80   ? 1
+                               : first < 0xc2 ? 0
+                               : first < 0xe0 ? 2
+                               : first < 0xf0 ? 3
+                               : first < 0xf5 ? 4
+                                              : 0;
+    if (length == 0) return n;
+    for (std::size_t k = 1; k < length; ++k)
+      if ((byte(n + k) & 0xc0) != 0x80) return n;
+    n += length;
+  }
+  return text.size();
+}
+
 /// Refuses what cannot be a case before the parser sees it.
 void check_text(const std::string& text, const std::string& name) {
   if (text.size() > max_file_size)
@@ -53,6 +72,17 @@ void check_text(const std::string& text, const std::string& name) {
     const auto u = static_cast<unsigned char>(c);
     if (u == 0 || (u < 0x20 && c != '\t' && c != '\n' && c != '\r'))
       throw InputError(fmt::format("{}: is not a text file (byte {:#04x}); a case is TOML", name, u));
+  }
+  if (const std::size_t at = first_not_utf8(text); at < text.size()) {
+    std::string shown = text;
+    for (std::size_t n = at; n < shown.size(); n = first_not_utf8(shown, n)) shown[n] = '?';
+    const Problem p{
+        .what = fmt::format("the byte {:#04x} is no UTF-8: the file was saved in another encoding, such as "
+                            "ANSI (Windows-1252)",
+                            static_cast<unsigned char>(text[at])),
+        .expected = "a file saved as UTF-8, as editors offer under \"Save as\"",
+        .place = {std::make_shared<Source>(Source{name, shown}), at, 1}};
+    throw InputError(render(std::vector{p}));
   }
 }
 

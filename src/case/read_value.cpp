@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -20,7 +21,10 @@ class ValueReader {
       : root_(node), key_(key), path_(path), ambient_(ambient), problems_(problems) {}
 
   bool operator()(bool* out) { return plain<bool>(root_, *out); }
-  bool operator()(std::string* out) { return plain<std::string>(root_, *out); }
+  bool operator()(std::optional<bool>* out) { return plain<bool>(root_, out->emplace()); }
+  bool operator()(std::string* out) {
+    return plain<std::string>(root_, *out) && without_escapes(root_, *out);
+  }
   bool operator()(int* out) { return integer(root_, *out); }
   bool operator()(std::int64_t* out) { return integer(root_, *out); }
   bool operator()(double* out) { return number(root_, *out); }
@@ -33,6 +37,9 @@ class ValueReader {
   }
   bool operator()(std::array<int, 3>* out) { return fixed(root_, *out, &ValueReader::integer<int>); }
   bool operator()(std::array<double, 2>* out) { return fixed(root_, *out, &ValueReader::number); }
+  bool operator()(std::optional<std::array<double, 2>>* out) {
+    return fixed(root_, out->emplace(), &ValueReader::number);
+  }
   bool operator()(std::vector<std::array<double, 4>>* out) { return items(root_, *out, &ValueReader::four); }
   bool operator()(std::vector<Vec3>* out) { return items(root_, *out, &ValueReader::vector); }
   bool operator()(std::optional<std::array<Vec3, 2>>* out) {
@@ -70,13 +77,15 @@ class ValueReader {
   }
 
  private:
-  bool fail(const Node& node, const std::string& what, const std::string& closest = "") {
+  /// `instead`: what the user most likely meant, as TOML.
+  bool fail(const Node& node, const std::string& what, const std::string& closest = "",
+            const std::string& instead = "") {
     if (enough(problems_)) return false;
     problems_.push_back({.key = path_,
                          .what = what,
                          .expected = expectation(key_),
                          .nearest = closest,
-                         .example = key_.name + " = " + example_,
+                         .example = key_.name + " = " + (instead.empty() ? example_ : instead),
                          .place = node.place});
     return false;
   }
@@ -87,6 +96,18 @@ class ValueReader {
     if (!value) return fail(node, kind_words(node) + " does not fit here");
     out = *value;
     return true;
+  }
+
+  /// "C:\rocks\rock.stl" holds two carriage returns.
+  bool without_escapes(const Node& node, const std::string& text) {
+    if (std::none_of(text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20; }))
+      return true;
+    std::string slashes(node.place.text());
+    std::replace(slashes.begin(), slashes.end(), '\\', '/');
+    return fail(
+        node,
+        "a \\ in double quotes begins a sign of its own, such as \\n or \\r; in the name of a file, write /",
+        "", slashes);
   }
 
   template <class T>
@@ -104,9 +125,16 @@ class ValueReader {
     const auto* real = std::get_if<double>(&node.value);
     const auto* text = std::get_if<std::string>(&node.value);
     if (key_.dimension == Dimension::none) {
-      if (!whole && !real)
-        return fail(node,
-                    kind_words(node) + (text ? " is no bare number (no quotes here)" : " is no number"));
+      if (!whole && !real) {
+        const std::string point = text && !parse_number(*text) ? with_decimal_point(*text) : "";
+        const std::string meant = text && parse_number(*text) ? *text : parse_number(point) ? point : "";
+        return fail(
+            node,
+            kind_words(node) + (!point.empty() ? " has a comma; a number has a decimal point and no quotes"
+                                : text         ? " is no bare number (no quotes here)"
+                                               : " is no number"),
+            "", &node == &root_ ? meant : "");
+      }
       out = whole ? static_cast<double>(*whole) : *real;
       if (!std::isfinite(out)) return fail(node, "not a finite number");
       return in_range(node, out);
@@ -120,10 +148,21 @@ class ValueReader {
     try {
       out = parse_quantity(text, key_.dimension, ambient_);
     } catch (const InputError& e) {
-      return fail(node, e.what());
+      const std::string point = with_decimal_point(text);
+      const bool helps = !point.empty() && &node == &root_ && is_quantity(point);
+      return fail(node, e.what(), "", helps ? fmt::format("\"{}\"", point) : "");
     }
     if (std::isnan(out)) return fail(node, "the ambient pressure itself cannot be gauge");
     return true;
+  }
+
+  bool is_quantity(const std::string& text) const {
+    try {
+      parse_quantity(text, key_.dimension, ambient_);
+      return true;
+    } catch (const InputError&) {
+      return false;
+    }
   }
 
   bool in_range(const Node& node, double v) {
@@ -154,7 +193,11 @@ class ValueReader {
   template <class Out, class Element>
   bool fixed(const Node& node, Out& out, bool (ValueReader::*read)(const Node&, Element&)) {
     if (!node.is_list() || node.children.size() != out.size())
-      return fail(node, fmt::format("{} instead of a list of {}", kind_words(node), out.size()));
+      return fail(node,
+                  fmt::format("{} instead of a list of {}{}", kind_words(node), out.size(),
+                              node.children.size() == 2 * out.size() && key_.dimension == Dimension::none
+                                  ? " (a number has a decimal point, not a comma)"
+                                  : ""));
     bool good = true;
     for (std::size_t i = 0; i < out.size(); ++i) good = (this->*read)(node.children[i], out[i]) && good;
     return good;

@@ -56,8 +56,10 @@ class CaseReader {
 
   void read_table(const Node& table, const std::vector<Key>& keys, const std::string& path) {
     for (const Key& key : keys)
-      if (const Node* node = table.find(key.name))
+      if (const Node* node = table.find(key.name)) {
+        case_.given.insert(path + "." + key.name);
         read_value(*node, key, path + "." + key.name, ambient_, problems_);
+      }
     require(keys, &table, path, table.place);
   }
 

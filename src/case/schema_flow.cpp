@@ -50,7 +50,7 @@ std::vector<Key> keys(FluidSpec& s) {
 
 std::vector<Key> keys(FlowSpec& s) {
   return {{"solver", choice(s.solver), none, anything, "How the fluid is computed", ""},
-          {"turbulence", choice(s.turbulence), none, anything, "Turbulence model", ""},
+          decisive(Key{"turbulence", choice(s.turbulence), none, anything, "Turbulence model", ""}),
           {"round_jet_correction", &s.round_jet_correction, none, anything,
            "Vortex-stretching term that cures the round-jet anomaly of k-epsilon", "Pope 1978"},
           {"compressibility_correction", &s.compressibility_correction, none, anything,

@@ -13,11 +13,11 @@ struct Part {
   std::vector<std::string> sections;  ///< what it reads
 };
 
-const std::array<Part, 13> parts{{
+const std::array<Part, 14> parts{{
     {sense_run, {"run", "environment", "fluid", "flow", "body", "splitter"}},
     {sense_grid, {"grid"}},
     {sense_boundaries, {"boundary", "environment", "flow", "grid"}},
-    {sense_turbulence, {"boundary", "initial", "flow", "grid"}},
+    {sense_states, {"boundary", "initial", "flow", "grid", "environment", "fluid", "body"}},
     {sense_materials, {"material", "material_pair", "contact"}},
     {sense_shapes, {"body", "material", "launch", "run"}},
     {sense_motion, {"body", "run"}},
@@ -28,6 +28,7 @@ const std::array<Part, 13> parts{{
     {sense_expectations, {"expect", "convergence", "exact", "flow"}},
     {sense_overlaps, {"body", "launch"}},
     {sense_records, {"grid", "flow", "probe", "line", "slice"}},
+    {sense_idle, {"boundary", "valve", "contact", "body", "wall", "splitter"}},
 }};
 
 }  // namespace

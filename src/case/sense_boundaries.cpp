@@ -34,6 +34,23 @@ void check_jet_face(const Case& c, std::size_t f, const std::string& key, Findin
               fmt::format("[jet] direction = [{:g}, {:g}, {:g}]", normal.x(), normal.y(), normal.z()));
 }
 
+/// Across a periodic face cells see each other: the first and the last must be alike.
+void check_periodic_cells(const Case& c, std::size_t axis, Findings& found) {
+  const AxisSpec& a = c.grid.axis[axis];
+  if (a.points.size() < 2 || a.cells.size() + 1 != a.points.size()) return;
+  const auto width = [&](std::size_t block, int cell) {
+    return cell_width(a.points[block + 1] - a.points[block], a.cells[block],
+                      a.grading.empty() ? 1.0 : a.grading[block], cell);
+  };
+  const double first = width(0, 0), last = width(a.cells.size() - 1, a.cells.back() - 1);
+  if (std::abs(first - last) > 1e-9 * first)
+    found.error(
+        std::string("grid.") + axis_names[axis],
+        fmt::format("periodic, but its first cell is {} wide and its last {}",
+                    format_quantity(first, Dimension::length), format_quantity(last, Dimension::length)),
+        "equal cells at both ends of a periodic axis", "grading = [1]");
+}
+
 void check_face(const Case& c, std::size_t f, const std::string& key, Findings& found) {
   const BoundarySpec& face = c.boundary[f];
   const BoundarySpec& opposite = c.boundary[f ^ 1u];
@@ -41,6 +58,7 @@ void check_face(const Case& c, std::size_t f, const std::string& key, Findings& 
     found.error(key + ".type",
                 fmt::format("periodic, but {} is \"{}\"", face_names[f ^ 1u], word(opposite.type)),
                 "both faces of the axis periodic", "type = \"periodic\"");
+  if (f % 2 == 0 && face.type == BoundaryType::periodic) check_periodic_cells(c, f / 2, found);
   if (face.type == BoundaryType::velocity && !face.state.velocity)
     found.error(key + ".velocity", "a velocity boundary needs its velocity",
                 "a list of 3 velocities or formulas", "velocity = [\"3 m/s\", \"0 m/s\", \"0 m/s\"]");

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/units.hpp"
@@ -27,6 +28,11 @@ void sense_run(const Case& c, Findings& found) {
                 "\"time\", or at least one [[body]]", "until = \"time\"");
   if (c.run.until == RunUntil::verdict && !c.splitter.enabled)
     found.error("run.until", "a verdict needs the dividing plate", "a section [splitter]", "[splitter]");
+  if (c.run.until == RunUntil::verdict && !c.bodies.empty() &&
+      std::all_of(c.bodies.begin(), c.bodies.end(),
+                  [](const BodySpec& b) { return b.motion == Motion::fixed; }))
+    found.error("run.until", "a verdict needs a body that moves: all are \"fixed\"",
+                "\"time\", or a free body", "until = \"time\"");
   if (c.run.time_step && *c.run.time_step > c.run.end_time)
     found.error("run.time_step",
                 fmt::format("a step of {} is longer than the run",

@@ -86,22 +86,56 @@ double smallest_radius(const Solid& s) {
   return smallest;
 }
 
+/// Who goes behind whom on the belt, and who would lie on whom.
+void check_belt(const Case& c, Findings& found) {
+  const auto named = [&](const std::string& name) {
+    return std::find_if(c.bodies.begin(), c.bodies.end(), [&](const BodySpec& b) { return b.name == name; });
+  };
+  for (std::size_t n = 0; n < c.bodies.size(); ++n) {
+    const BodySpec& b = c.bodies[n];
+    if (!b.on_belt) continue;
+    const std::string key = fmt::format("body.{}", n);
+    if (!b.behind.empty()) {
+      const auto ahead = named(b.behind);
+      if (ahead == c.bodies.end() || !ahead->on_belt) {
+        found.error(
+            key + ".behind",
+            fmt::format("there is no body \"{}\"{}", b.behind, ahead == c.bodies.end() ? "" : " on the belt"),
+            "the name of a [[body]] that is on_belt", fmt::format("behind = \"{}\"", c.bodies[0].name));
+        continue;
+      }
+      const BodySpec* next = &b;
+      for (std::size_t steps = 0; next && !next->behind.empty(); ++steps) {
+        if (steps > c.bodies.size()) {
+          found.error(key + ".behind", fmt::format("\"{}\" would go behind itself", b.name),
+                      "a first body without `behind`");
+          break;
+        }
+        const auto after = named(next->behind);
+        next = after == c.bodies.end() ? nullptr : &*after;
+      }
+      continue;
+    }
+    for (std::size_t m = 0; m < n; ++m) {
+      const BodySpec& other = c.bodies[m];
+      if (!other.on_belt || !other.behind.empty() || other.along != b.along || other.across != b.across)
+        continue;
+      found.error(
+          key + ".on_belt",
+          fmt::format("\"{}\" and \"{}\" would start in the same place: [launch] is one for all bodies",
+                      other.name, b.name),
+          "a place of its own on the belt: `behind` and `gap`, or `along` and `across`",
+          fmt::format("behind = \"{}\", gap = \"12 mm\"", other.name));
+      break;
+    }
+  }
+}
+
 }  // namespace
 
 void sense_overlaps(const Case& c, Findings& found) {
   constexpr double allowed = 0.05;  // of the smaller radius: bodies resting on each other do overlap a little
-  const BodySpec* first = nullptr;
-  for (std::size_t n = 0; n < c.bodies.size(); ++n) {
-    if (!c.bodies[n].on_belt) continue;
-    if (first)
-      found.error(
-          fmt::format("body.{}.on_belt", n),
-          fmt::format("\"{}\" and \"{}\" would start in the same place: [launch] is one for all bodies",
-                      first->name, c.bodies[n].name),
-          "one body on_belt; the place and velocity of each other one",
-          R"(position = ["-40 mm", "0 mm", "79 mm"], velocity = ["3 m/s", "0 m/s", "-0.2 m/s"])");
-    else first = &c.bodies[n];
-  }
+  check_belt(c, found);
   std::vector<Solid> solids;
   for (const BodySpec& b : c.bodies) solids.push_back(solid(b));
   for (std::size_t i = 0; i < solids.size(); ++i)

@@ -6,6 +6,8 @@
 #include <sstream>
 #include <toml.hpp>
 
+#include "base/units.hpp"
+
 // The only file that includes toml11: it is slow to compile.
 namespace ejecta {
 namespace {
@@ -83,6 +85,68 @@ std::string plain_message(const std::string& what) {
   return line;
 }
 
+bool is_toml(const std::string& text) {
+  try {
+    std::istringstream stream(text + "\n");
+    toml::parse(stream, "");
+    return true;
+  } catch (const std::exception&) {
+    return false;
+  }
+}
+
+std::string replaced(std::string text,
+                     std::initializer_list<std::pair<std::string_view, std::string_view>> signs) {
+  for (const auto& [from, to] : signs)
+    for (std::size_t at = 0; (at = text.find(from, at)) != std::string::npos; at += to.size())
+      text.replace(at, from.size(), to);
+  return text;
+}
+
+/// The quotes of word processors made plain.
+std::string with_plain_quotes(const std::string& text) {
+  return replaced(text, {{"\u201c", "\""},
+                         {"\u201d", "\""},
+                         {"\u201e", "\""},
+                         {"\u201f", "\""},
+                         {"\u00ab", "\""},
+                         {"\u00bb", "\""},
+                         {"\u2018", "'"},
+                         {"\u2019", "'"},
+                         {"\u201a", "'"}});
+}
+
+/// What a value is most often meant to be that is no TOML, and in which words to say so. An advice is given
+/// only if it is TOML itself.
+void advise_value(Problem& p, const std::string& key, const std::string& written) {
+  const auto offer = [&](const std::string& value, const char* expected) {
+    if (value.empty() || !is_toml(key + "= " + value)) return false;
+    p.expected = expected;
+    p.example = key + "= " + value;
+    return true;
+  };
+  const std::string plain = with_plain_quotes(written);
+  if (plain != written && offer(plain, "straight quotes, \"...\"")) return;
+  if (written.find('\\') != std::string::npos &&
+      offer(replaced(written, {{"\\\\", "/"}, {"\\", "/"}}),
+            "/ for \\ in the name of a file, or the name in 'single quotes'"))
+    return;
+  const bool bare = written.find_first_of("\"'[]{}") == std::string::npos && !written.empty();
+  if (const std::string point = with_decimal_point(written); bare && !point.empty()) {
+    if (parse_number(point) ? offer(point, "a decimal point")
+                            : offer("\"" + point + "\"", "quotes around quantities, and a decimal point"))
+      return;
+  }
+  if (bare && written.find(',') == std::string::npos &&
+      offer("\"" + written + "\"", "quotes around words and quantities"))
+    return;
+  p.expected =
+      "a \"text\", a \"quantity with unit\", a number with a decimal point, true, false or a [list], with "
+      "matching "
+      "quotes and brackets";
+  p.example = "position = [\"0 mm\", \"0 mm\", \"75 mm\"]";
+}
+
 /// Says what is most often meant by a line that is no TOML.
 void advise(Problem& p, std::string_view line) {
   const auto equals = line.find('=');
@@ -93,18 +157,9 @@ void advise(Problem& p, std::string_view line) {
     p.example = "end_time = \"8 ms\"";
     return;
   }
-  const std::string key(line.substr(0, equals));
   std::string rest(line.substr(value, line.find('#', value) - value));
   rest.erase(rest.find_last_not_of(" \t\r") + 1);
-  if (rest.find('"') == std::string::npos && rest.find('[') == std::string::npos && !rest.empty()) {
-    p.expected = "quotes around words and quantities";
-    p.example = fmt::format("{}= \"{}\"", key, rest);
-  } else {
-    p.expected =
-        "a \"text\", a \"quantity with unit\", a number, true, false or a [list], with matching quotes and "
-        "brackets";
-    p.example = "position = [\"0 mm\", \"0 mm\", \"75 mm\"]";
-  }
+  advise_value(p, std::string(line.substr(0, equals)), rest);
 }
 
 std::size_t line_start(const std::string& text, std::size_t line_number) {

@@ -8,20 +8,30 @@ namespace ejecta {
 
 namespace {
 
-/// The keys that `wanted(section, element, key, value)` asks for.
-template <class Wanted>
-std::string write_keys(Case& c, const Wanted& wanted) {
+/// How a key stands in the text.
+enum class Writing { plain, as_comment, not_at_all };
+
+/// Each key with a value as `writing(its name with section and element, default as text, value)` says.
+template <class Rule>
+std::string write_keys(const Case& original, const Rule& writing) {
+  Case c = original, blank;  // the schema binds to a case it could change
   std::string text;
-  const std::vector<Section> all = sections(c);
+  const std::vector<Section> all = sections(c), plain = sections(blank);
   for (std::size_t m = 0; m < all.size(); ++m) {
     const Section& s = all[m];
     if (s.enabled && !*s.enabled) continue;
     for (std::size_t n = 0; n < s.count(); ++n) {
+      while (plain[m].count() <= n) plain[m].append();
+      const std::string section = s.repeated ? fmt::format("{}.{}.", s.name, n) : s.name + ".";
       std::string lines;
-      const std::vector<Key> keys = s.keys(n);
-      for (std::size_t i = 0; i < keys.size(); ++i)
-        if (const std::string value = value_text(keys[i]); !value.empty() && wanted(m, n, i, value))
-          lines += keys[i].name + " = " + value + "\n";
+      const std::vector<Key> keys = s.keys(n), defaults = plain[m].keys(n);
+      for (std::size_t i = 0; i < keys.size(); ++i) {
+        const std::string value = value_text(keys[i]);
+        const Writing w = value.empty() ? Writing::not_at_all
+                                        : writing(section + keys[i].name, value_text(defaults[i]), value);
+        if (w != Writing::not_at_all)
+          lines += (w == Writing::as_comment ? "# " : "") + keys[i].name + " = " + value + "\n";
+      }
       if (lines.empty() && !s.repeated) continue;
       text += fmt::format(fmt::runtime(s.repeated ? "{}[[{}]]\n{}" : "{}[{}]\n{}"), text.empty() ? "" : "\n",
                           s.name, lines);
@@ -32,20 +42,16 @@ std::string write_keys(Case& c, const Wanted& wanted) {
 
 }  // namespace
 
-std::string write_case(const Case& original) {
-  Case c = original;  // the schema binds to a case it could change
-  return write_keys(c, [](auto...) { return true; });
+std::string write_case(const Case& c) {
+  return write_keys(c, [&](const std::string& key, const std::string& standard, const std::string& value) {
+    return c.given.contains(key) || value != standard ? Writing::plain : Writing::as_comment;
+  });
 }
 
-std::string write_changes(const Case& original) {
-  Case c = original, blank;
-  const std::vector<Section> plain = sections(blank);
-  return write_keys(c,
-                    [&](std::size_t section, std::size_t element, std::size_t key, const std::string& value) {
-                      const Section& s = plain[section];
-                      while (s.count() <= element) s.append();
-                      return value_text(s.keys(element)[key]) != value;
-                    });
+std::string write_changes(const Case& c) {
+  return write_keys(c, [](const std::string&, const std::string& standard, const std::string& value) {
+    return value != standard ? Writing::plain : Writing::not_at_all;
+  });
 }
 
 }  // namespace ejecta

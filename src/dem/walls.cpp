@@ -43,6 +43,17 @@ void require_area(const TriangleMesh& mesh, const std::string& name) {
   }
 }
 
+Mat3 turn_of(const WallSpec& spec) {
+  return Eigen::AngleAxisd(spec.rotation_angle, spec.rotation_axis.normalized()).toRotationMatrix();
+}
+
+/// A surface from a file, turned about its origin, which then lies at `point`.
+TriangleMesh placed(TriangleMesh mesh, const WallSpec& spec) {
+  const Mat3 turn = turn_of(spec);
+  for (Vec3& v : mesh.vertices) v = spec.point + turn * v;
+  return mesh;
+}
+
 }  // namespace
 
 Wall make_wall(const WallSpec& spec, const Materials& materials, const std::string& directory) {
@@ -61,7 +72,7 @@ Wall make_wall(const WallSpec& spec, const Materials& materials, const std::stri
     wall.is_plane = false;
     if (spec.kind == WallKind::mesh) {
       const std::string path = (std::filesystem::path(directory) / spec.file).string();
-      const TriangleMesh mesh = read_stl(path, 1.0);
+      const TriangleMesh mesh = placed(read_stl(path, spec.scale), spec);
       require_area(mesh, path);
       wall.surface = std::make_shared<Surface>(mesh, spec.two_sided);
       if (const double volume = mass_mesh(mesh).volume; wall.surface->closed() && volume > 0) {
@@ -73,7 +84,7 @@ Wall make_wall(const WallSpec& spec, const Materials& materials, const std::stri
     }
     require_size(spec.size);
     wall.solids = {spec.kind == WallKind::box
-                       ? moved(polytope_box(0.5 * spec.size), Mat3::Identity(), spec.point)
+                       ? moved(polytope_box(0.5 * spec.size), turn_of(spec), spec.point)
                        : slab(spec.point, wall.normal, spec.size)};
     wall.surface = std::make_shared<Surface>(triangles_of(wall.solids.front()));
     return wall;

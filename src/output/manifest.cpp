@@ -38,6 +38,7 @@ nlohmann::ordered_json make_manifest(const Provenance& p) {
           {"precision", precision()},
           {"command", p.command},
           {"case", p.case_path},
+          {"set", p.overrides},
           {"input_sha256", sha256_hex(p.input)},
           {"started", fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::chrono::system_clock::now()))},
           {"threads", p.threads},
@@ -50,8 +51,11 @@ nlohmann::ordered_json make_manifest(const Provenance& p) {
 }
 
 std::vector<std::string> provenance_lines(const Provenance& p) {
-  return {fmt::format("ejecta {} ({}, {})", version(), git_revision(), precision()),
-          fmt::format("case {}", p.case_path), fmt::format("input sha256 {}", sha256_hex(p.input))};
+  std::vector<std::string> lines{fmt::format("ejecta {} ({}, {})", version(), git_revision(), precision()),
+                                 fmt::format("case {}", p.case_path)};
+  for (const std::string& set : p.overrides) lines.push_back("set " + set);
+  lines.push_back(fmt::format("input sha256 {}", sha256_hex(p.input)));
+  return lines;
 }
 
 }  // namespace ejecta::output

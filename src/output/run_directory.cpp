@@ -104,6 +104,11 @@ void RunDirectory::write_manifest(const nlohmann::ordered_json& manifest) const 
   write_file(path_ / "manifest.json", json_text(manifest) + '\n');
 }
 
+void RunDirectory::remove_result() const {
+  std::error_code none;
+  for (const char* name : {"result.json", "report.html"}) fs::remove(path_ / name, none);
+}
+
 void RunDirectory::write_result(const nlohmann::ordered_json& result) const {
   write_file(path_ / "result.json",
              json_text(result) + '\n');  // what is no number becomes null: the rest counts

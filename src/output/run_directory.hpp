@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace ejecta::output {
 
@@ -12,6 +13,7 @@ struct Provenance {
   std::string case_path;
   std::string input;  ///< resolved case: its SHA-256 is the input hash
   int threads = 1;
+  std::vector<std::string> overrides{};  ///< what the command changed in the case, "section.key=value"
 };
 
 /// manifest.json: version, git revision, compiler, flags, precision, machine, threads, input hash, start.
@@ -46,6 +48,8 @@ class RunDirectory {
   void write_manifest(const nlohmann::ordered_json& manifest) const;
   /// A number that is not finite is written as null, and then told: throws DivergedError with its key.
   void write_result(const nlohmann::ordered_json& result) const;
+  /// Of a run that goes on: what it said at its earlier end is no longer so.
+  void remove_result() const;
 
  private:
   explicit RunDirectory(std::filesystem::path path) : path_(std::move(path)) {}

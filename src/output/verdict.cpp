@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 
 namespace ejecta::output {
 namespace {
@@ -13,16 +14,36 @@ using nlohmann::ordered_json;
 
 bool has_number(const ordered_json& j, const char* key) { return j.contains(key) && j[key].is_number(); }
 
+/// " of 150 ms", if the result knows it.
+std::string limit_words(const ordered_json& result) {
+  return has_number(result, "simulated_time_s")
+             ? fmt::format(" of {:.4g} ms", 1e3 * result["simulated_time_s"].get<double>())
+             : "";
+}
+
+/// What the body did, against what was wanted of it: "is ejected, as wanted", "is by-catch, ejected though
+/// not wanted".
+std::string outcome_words(const ordered_json& body) {
+  const std::string outcome = body["outcome"];
+  const std::string judgement = body.value("judgement", "");
+  if (judgement == "right") return fmt::format("is right: {}, as it should be", outcome);
+  if (judgement == "by-catch") return "is by-catch: ejected, and should not be";
+  if (judgement == "missed") return "is missed: not ejected, and should be";
+  return "is " + outcome;
+}
+
 /// "cube is ejected: its centre passes 12.3 mm above the plate's edge, with 0.25 m/s of vertical velocity to
 /// spare"
-std::string of_body(const ordered_json& body) {
-  if (body["outcome"] == "undecided") return body.value("name", "the body") + " did not reach the plate";
-  std::string text =
-      fmt::format("{} is {}", body.value("name", "the body"), body["outcome"].get<std::string>());
+std::string of_body(const ordered_json& body, const ordered_json& result) {
+  const std::string name = body.value("name", "the body");
+  if (body["outcome"] == "undecided")
+    return fmt::format("{} is undecided: the time limit{} came before it reached the plate", name,
+                       limit_words(result));
+  std::string text = fmt::format("{} {}", name, outcome_words(body));
   if (has_number(body, "clearance_at_splitter_m")) {
     const double mm = 1e3 * body["clearance_at_splitter_m"].get<double>();
-    text += fmt::format(": its centre passes {:.1f} mm {} the plate's edge", std::abs(mm),
-                        mm >= 0 ? "above" : "below");
+    text += fmt::format("{} its centre passes {:.1f} mm {} the plate's edge",
+                        body.contains("judgement") ? ";" : ":", std::abs(mm), mm >= 0 ? "above" : "below");
   }
   if (has_number(body, "velocity_margin_z_m_s")) {
     const double margin = body["velocity_margin_z_m_s"].get<double>();
@@ -30,6 +51,41 @@ std::string of_body(const ordered_json& body) {
                         : fmt::format(", {:.2f} m/s of vertical velocity short of clearing it", -margin);
   }
   return text;
+}
+
+/// "a, b, c and 4 more"
+std::string some_of(const std::vector<std::string>& names) {
+  constexpr std::size_t shown = 6;
+  std::string text;
+  for (std::size_t n = 0; n < std::min(shown, names.size()); ++n) text += (n ? ", " : "") + names[n];
+  return names.size() > shown ? fmt::format("{} and {} more", text, names.size() - shown) : text;
+}
+
+/// Several bodies: how many are what, and which.
+std::string of_several(const std::vector<const ordered_json*>& judged, const ordered_json& result) {
+  std::map<std::string, std::vector<std::string>> by_word;
+  bool wanted = false;
+  for (const ordered_json* body : judged) {
+    wanted = wanted || body->contains("judgement");
+    by_word[body->contains("judgement") ? (*body)["judgement"] : (*body)["outcome"]].push_back(
+        body->value("name", "?"));
+  }
+  const std::vector<std::string>& undecided = by_word["undecided"];
+  const std::string late = fmt::format("undecided, since the time limit{} came first", limit_words(result));
+  if (!wanted) {
+    const std::vector<std::string>& ejected = by_word["ejected"];
+    if (undecided.size() == judged.size()) return fmt::format("All {} bodies are {}.", judged.size(), late);
+    return fmt::format(
+        "{} of {} bodies {} ejected{}{}{}.", ejected.size(), judged.size(),
+        ejected.size() == 1 ? "is" : "are", ejected.empty() ? "" : ": ", some_of(ejected),
+        undecided.empty() ? "" : fmt::format("; {} {}: {}", undecided.size(), late, some_of(undecided)));
+  }
+  std::string text;
+  for (const char* word : {"right", "by-catch", "missed", "ejected", "not ejected", "undecided"})
+    if (const auto& names = by_word[word]; !names.empty())
+      text += fmt::format("{}{} {} ({})", text.empty() ? "" : ", ", names.size(),
+                          std::string_view(word) == "undecided" ? late : word, some_of(names));
+  return fmt::format("Of {} bodies {}.", judged.size(), text);
 }
 
 /// "300 bodies followed for 3000 ms; at the end the fastest moves at 0.02 m/s"
@@ -53,21 +109,12 @@ std::string of_bodies_alone(const ordered_json& result) {
 }  // namespace
 
 std::string verdict_sentence(const ordered_json& result) {
-  std::size_t judged = 0, ejected = 0;
-  std::string sentence, names;
+  std::vector<const ordered_json*> judged;
   if (result.contains("bodies"))
-    for (const ordered_json& body : result["bodies"]) {
-      if (!body.contains("outcome") || !body["outcome"].is_string()) continue;
-      sentence = of_body(body);
-      ++judged;
-      if (body["outcome"] != "ejected") continue;
-      names += fmt::format("{}{}", ejected ? ", " : "", body.value("name", "?"));
-      ++ejected;
-    }
-  if (judged == 1) return sentence + '.';
-  if (judged > 1)
-    return fmt::format("{} of {} bodies {} ejected{}{}.", ejected, judged, ejected == 1 ? "is" : "are",
-                       ejected ? ": " : "", names);
+    for (const ordered_json& body : result["bodies"])
+      if (body.contains("outcome") && body["outcome"].is_string()) judged.push_back(&body);
+  if (judged.size() == 1) return of_body(*judged.front(), result) + '.';
+  if (judged.size() > 1) return of_several(judged, result);
   if (result.contains("expectations")) {
     const ordered_json& all = result["expectations"];
     std::size_t passed = 0;
@@ -87,6 +134,15 @@ std::string verdict_sentence(const ordered_json& result) {
   if (has_number(result, "simulated_time_s"))
     return fmt::format("Computed {:.4g} ms.", 1e3 * result["simulated_time_s"].get<double>());
   return "Computed.";
+}
+
+std::vector<std::string> undecided_bodies(const ordered_json& result) {
+  std::vector<std::string> names;
+  if (result.contains("bodies"))
+    for (const ordered_json& body : result["bodies"])
+      if (body.contains("outcome") && body["outcome"] == "undecided")
+        names.push_back(body.value("name", "?"));
+  return names;
 }
 
 }  // namespace ejecta::output

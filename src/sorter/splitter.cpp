@@ -8,7 +8,9 @@ namespace ejecta {
 
 Splitter::Splitter(const SplitterSpec& spec, const Vec3& nozzle, double undisturbed_height, double gravity_z)
     : spec_(spec),
-      edge_(nozzle.x() + spec.distance, nozzle.y(), undisturbed_height + spec.height),
+      edge_(spec.edge ? Vec3(nozzle + Vec3((*spec.edge)[0], 0.0, (*spec.edge)[1]))
+                      : Vec3(nozzle.x() + spec.distance, nozzle.y(), undisturbed_height + spec.height)),
+      from_jet_(edge_.x() - nozzle.x()),
       gravity_z_(gravity_z) {}
 
 WallSpec Splitter::wall() const {
@@ -24,13 +26,14 @@ WallSpec Splitter::wall() const {
 void Splitter::resize(std::size_t bodies) {
   verdicts_.resize(bodies);
   approach_.resize(bodies);
+  judged_.resize(bodies, true);
 }
 
 void Splitter::watch(std::span<const Body> bodies, std::span<const Vec3> before, double time, double dt) {
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     const Body& body = bodies[b];
     const Vec3 &from = before[b], &to = body.position;
-    if (verdicts_[b] || from.x() >= edge_.x()) continue;
+    if (!judged_[b] || verdicts_[b] || from.x() >= edge_.x()) continue;
     const double gap = edge_.x() - to.x(), reach = 2.0 * body.shape.bounding_radius();
     if (const Vec3& v = body.velocity; gap > reach && v.x() > 0.0) {
       const double t = gap / v.x();
@@ -46,13 +49,18 @@ void Splitter::watch(std::span<const Body> bodies, std::span<const Vec3> before,
     v.time = time - (1.0 - share) * dt;
     const Approach free =
         approach_[b].velocity > 0.0 ? approach_[b] : Approach{body.velocity.x(), v.clearance};
-    v.velocity_margin = free.clearance * free.velocity / spec_.distance;
+    v.velocity_margin = free.clearance * free.velocity / from_jet_;
     verdicts_[b] = v;
   }
 }
 
 bool Splitter::all_passed() const {
-  return std::all_of(verdicts_.begin(), verdicts_.end(), [](const auto& v) { return v.has_value(); });
+  bool any = false;
+  for (std::size_t b = 0; b < verdicts_.size(); ++b) {
+    if (judged_[b] && !verdicts_[b]) return false;
+    any = any || judged_[b];
+  }
+  return any;
 }
 
 std::vector<double> Splitter::state() const {

@@ -17,9 +17,9 @@ struct Verdict {
   double time = 0.0;             ///< s, of passing
 };
 
-/// The dividing plate: its edge lies `distance` behind the jet's axis and `height` above the path of the body
-/// that no air touches. Watches every body until its centre passes the edge, or until the plate has thrown it
-/// back below the edge.
+/// The dividing plate: its edge lies where the machine has it (`edge`, from the nozzle), or `distance` behind
+/// the jet's axis and `height` above the path of the body that no air touches. Watches every body until its
+/// centre passes the edge, or until the plate has thrown it back below the edge.
 class Splitter {
  public:
   Splitter(const SplitterSpec& spec, const Vec3& nozzle, double undisturbed_height, double gravity_z);
@@ -31,14 +31,19 @@ class Splitter {
   /// To be called after every step, with the positions before it and the time after it.
   void watch(std::span<const Body> bodies, std::span<const Vec3> before, double time, double dt);
   const std::optional<Verdict>& verdict(std::size_t body) const { return verdicts_.at(body); }
+  /// Of the bodies that are judged; false of none.
   bool all_passed() const;
   void resize(std::size_t bodies);
+  /// A body that stays where it is never comes to the plate, and nobody waits for it.
+  void leave_out(std::size_t body) { judged_.at(body) = false; }
+  bool judges(std::size_t body) const { return judged_.at(body); }
   std::vector<double> state() const;
   void restore(std::span<const double> state);
 
  private:
   SplitterSpec spec_;
   Vec3 edge_;
+  double from_jet_;  ///< m, from the jet's axis to the edge
   double gravity_z_;
   /// The free flight of a body as it came within its own size of the plate: what a plate that throws it back
   /// kept it from.
@@ -48,6 +53,7 @@ class Splitter {
   };
   std::vector<Approach> approach_;
   std::vector<std::optional<Verdict>> verdicts_;
+  std::vector<bool> judged_;
 };
 
 }  // namespace ejecta

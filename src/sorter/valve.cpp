@@ -41,7 +41,9 @@ Valve::Valve(const ValveSpec& spec, const std::string& directory) : spec_(spec) 
   const bool traced = spec.shape == ValveShape::trace;
   if (traced) {
     const std::filesystem::path file = std::filesystem::path(directory) / spec.trace;
-    read_valve_trace(file.string(), trace_time_, trace_opening_);
+    std::vector<Problem> problems;
+    trace_ = read_valve_trace(file.string(), problems);
+    if (!problems.empty()) throw InputError(render(problems));
   } else {
     require(spec.duration > 0.0, "duration", spec.duration, "a time above zero, or the valve never opens");
   }
@@ -51,7 +53,7 @@ Valve::Valve(const ValveSpec& spec, const std::string& directory) : spec_(spec) 
   std::sort(starts_.begin(), starts_.end());
   for (const double start : starts_) {
     if (traced) {
-      events_.insert(events_.end(), {start + trace_time_.front(), start + trace_time_.back()});
+      events_.insert(events_.end(), {start + trace_.time.front(), start + trace_.time.back()});
       continue;
     }
     events_.push_back(start);
@@ -72,11 +74,11 @@ double Valve::pulse(double since_start) const {
 }
 
 double Valve::trace_at(double since_start) const {
-  const auto above = std::upper_bound(trace_time_.begin(), trace_time_.end(), since_start);
-  if (above == trace_time_.begin() || above == trace_time_.end()) return 0.0;
-  const auto n = static_cast<std::size_t>(above - trace_time_.begin());
-  const double x = (since_start - trace_time_[n - 1]) / (trace_time_[n] - trace_time_[n - 1]);
-  return (1.0 - x) * trace_opening_[n - 1] + x * trace_opening_[n];
+  const auto above = std::upper_bound(trace_.time.begin(), trace_.time.end(), since_start);
+  if (above == trace_.time.begin() || above == trace_.time.end()) return 0.0;
+  const auto n = static_cast<std::size_t>(above - trace_.time.begin());
+  const double x = (since_start - trace_.time[n - 1]) / (trace_.time[n] - trace_.time[n - 1]);
+  return (1.0 - x) * trace_.opening[n - 1] + x * trace_.opening[n];
 }
 
 double Valve::opening(double t) const {

@@ -3,14 +3,20 @@
 #include <vector>
 
 #include "case/case.hpp"
+#include "case/problem.hpp"
 
 namespace ejecta {
+
+/// The opening (0..1) of a valve over the time (s) after its command, as measured.
+struct ValveTrace {
+  std::vector<double> time, opening;
+};
 
 /// The valve of one jet: how far it is open over time. Every command opens it after `delay` along the rise
 /// law and closes it `duration` later along the fall law, from wherever it stood:
 ///   linear       r(x) = x                 smooth  r(x) = x^2 (3 - 2x)
 ///   exponential  r(x) = 1 - exp(-3x), so that 95 % is reached after one rise time
-/// A trace (CSV of time in s after the command, opening 0..1) replaces the law; outside it the valve is
+/// A trace (CSV of time after the command, opening) replaces the law; outside it the valve is
 /// closed. Where pulses overlap the wider opening counts.
 class Valve {
  public:
@@ -34,13 +40,13 @@ class Valve {
   double trace_at(double since_start) const;
   ValveSpec spec_;
   std::vector<double> starts_;
-  std::vector<double> trace_time_, trace_opening_;
+  ValveTrace trace_;
   std::vector<double> events_;
   double closed_from_ = 0.0;
 };
 
-/// Points of a trace file: two columns, time (s) and opening (0..1), separated by a comma; a first line that
-/// is not a number is a header, lines starting with # are skipped. Throws InputError naming file and line.
-void read_valve_trace(const std::string& file, std::vector<double>& time, std::vector<double>& opening);
+/// Reads a trace file: a head with the units of its two columns, "time [ms], opening [%]", or numbers alone,
+/// then in s and 0..1 (see read_csv). What is wrong goes to `problems`, with its line.
+ValveTrace read_valve_trace(const std::string& file, std::vector<Problem>& problems);
 
 }  // namespace ejecta

@@ -118,7 +118,7 @@ class CommandLine(unittest.TestCase):
         )
         answer = ejecta("check", self.case(swing))
         self.assertEqual(answer.returncode, 0, answer.stderr)
-        self.assertIn("10 x 10 x 10 mm, 1.41 g", answer.stdout)
+        self.assertIn("10 x 10 x 10 mm, 0.524 cm3, 1.41 g", answer.stdout)
         self.assertIn("goes its way in x -2 to 2, y 0, z 0 mm, up to 0.2 m/s, to (-1.088, 0, 0) mm", answer.stdout)
         self.assertEqual(ejecta("run", self.case(swing), "--quiet", "--out", "swing.run").returncode, 0)
         body = json.loads(pathlib.Path("swing.run/result.json").read_text())["bodies"][0]
@@ -271,6 +271,66 @@ class CommandLine(unittest.TestCase):
         self.assertIn("another case: body.0.diameter changed", answer.stderr)
         self.assertEqual(ejecta("run", case, "--resume", "--set", "run.end_time=2 ms").returncode, 0)
         self.assertEqual(json.loads(pathlib.Path("case.run/result.json").read_text())["simulated_time_s"], 0.002)
+
+    def flight(self, *bodies, end="200 ms"):
+        """Balls that fly over or under a plate at x, z = 250, -10 mm, without air."""
+        text = f'[run]\nuntil = "verdict"\nend_time = "{end}"\n[flow]\nsolver = "none"\n'
+        text += '[splitter]\nedge = ["250 mm", "-10 mm"]\nsolid = false\n'
+        for n, (height, wanted) in enumerate(bodies):
+            text += f'[[body]]\nname = "ball{n}"\ndiameter = "5 mm"\nposition = ["0 m", "{20 * n} mm", "{height} mm"]\n'
+            text += f'velocity = ["3 m/s", "0 m/s", "0 m/s"]\nwanted = {wanted}\n'
+        return self.case(text)
+
+    def test_the_verdict_says_what_was_wanted(self):
+        # 250 mm at 3 m/s are 83 ms, in which a body falls 34 mm.
+        case = self.flight((40, "true"), (40, "false"), (0, "true"), (0, "false"))
+        answer = ejecta("run", case)
+        self.assertEqual(answer.returncode, 0, answer.stderr)
+        self.assertIn("Of 4 bodies 2 right (ball0, ball3), 1 by-catch (ball1), 1 missed (ball2).", answer.stdout)
+        result = json.loads(pathlib.Path("case.run/result.json").read_text())
+        self.assertEqual([b["judgement"] for b in result["bodies"]], ["right", "by-catch", "missed", "right"])
+        self.assertEqual(result["plate"]["edge_from_nozzle_m"], [0.25, -0.01])
+
+    def test_only_a_verdict_is_exit_code_zero_and_the_run_can_go_on(self):
+        case = self.flight((40, "true"), end="30 ms")
+        self.assertIn("run.end_time: the run ends at 30 ms, before any body comes to the plate", ejecta("check", case).stdout)
+        answer = ejecta("run", case)
+        self.assertEqual(answer.returncode, 6)
+        self.assertIn("ball0 is undecided: the time limit of 30 ms came before it reached the plate.", answer.stdout)
+        advice = [line for line in answer.stderr.splitlines() if "--resume" in line][-1].strip()
+        self.assertRegex(advice, r"^ejecta run case.toml --set 'run.end_time=\d+ ms' --out case.run --resume$")
+        answer = subprocess.run(advice.replace("ejecta", EJECTA, 1), shell=True, capture_output=True, text=True)
+        self.assertEqual(answer.returncode, 0, answer.stderr)
+        self.assertIn("ball0 is right", answer.stdout)
+
+    def test_resume_of_a_finished_run_computes_nothing(self):
+        case = self.flight((40, "true"))
+        self.assertEqual(ejecta("run", case, "--quiet").returncode, 0)
+        before = {p: p.read_bytes() for p in pathlib.Path("case.run").rglob("*") if p.is_file()}
+        answer = ejecta("run", case, "--resume")
+        self.assertEqual(answer.returncode, 0, answer.stderr)
+        self.assertIn("case.run is finished: nothing to compute", answer.stdout)
+        self.assertIn("ball0 is right", answer.stdout)
+        self.assertEqual({p: p.read_bytes() for p in pathlib.Path("case.run").rglob("*") if p.is_file()}, before)
+        self.assertEqual(ejecta("run", case, "--resume", "--set", "body.0.diameter=4 mm").returncode, 2)
+
+    def test_what_set_changed_stands_in_everything_the_run_leaves(self):
+        self.assertEqual(ejecta("run", self.case(), "--quiet", "--set", "run.end_time=2 ms", "--set", "body.ball.mass=1 g").returncode, 0)
+        manifest = json.loads(pathlib.Path("case.run/manifest.json").read_text())
+        self.assertEqual(manifest["command"], "ejecta run case.toml --set 'run.end_time=2 ms' --set 'body.ball.mass=1 g'")
+        self.assertEqual(manifest["set"], ["run.end_time=2 ms", "body.ball.mass=1 g"])
+        self.assertIn("# set run.end_time=2 ms\n", pathlib.Path("case.run/history/body-ball.csv").read_text())
+        self.assertIn("run.end_time=2 ms", pathlib.Path("case.run/report.html").read_text())
+
+    def test_a_case_in_doubtful_units_is_asked_about(self):
+        for key, value, words in (
+            ("body.0.density", "3.400 kg/m3", "less than a foam's"),
+            ("body.0.density", "2700 g/cm3", "more than any metal's"),
+            ("body.0.diameter", "1 m", "grams rather than tonnes?"),
+        ):
+            answer = ejecta("check", self.case(), "--set", f"{key}={value}")
+            self.assertEqual(answer.returncode, 0, answer.stderr)
+            self.assertIn(words, answer.stdout)
 
     def test_a_printed_page_that_cannot_be_written_is_a_failure(self):
         with open("/dev/full", "w") as full:

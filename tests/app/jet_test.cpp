@@ -178,11 +178,12 @@ TEST_F(Measured, BadRowsAreRefusedWithTheirLine) {
     }
     return std::string();
   };
-  EXPECT_THAT(refusal("z,p\n1,2\n"), HasSubstr("measured.csv:1: the head of a column lacks its unit"));
-  EXPECT_THAT(refusal("z [ms],p [kPa]\n"), HasSubstr("lacks its unit"));
-  EXPECT_THAT(refusal("z [mm],p [kPa]\n1,2\n3\n"), HasSubstr("measured.csv:3: a value is missing"));
-  EXPECT_THAT(refusal("z [mm],p [kPa]\n3,2\n1,2\n"), HasSubstr("do not increase"));
-  EXPECT_THAT(refusal("z [mm],p [kPa]\n"), HasSubstr("no measured values"));
+  EXPECT_THAT(refusal("z,p\n1,2\n"), HasSubstr("measured.csv:1: error: the column \"z\" has no unit"));
+  EXPECT_THAT(refusal("z [ms],p [kPa]\n"), HasSubstr("\"ms\" is no unit of a length"));
+  EXPECT_THAT(refusal("z [mm],p [kPa]\n1,2\n3\n"),
+              HasSubstr("measured.csv:3: error: 1 values for 2 columns"));
+  EXPECT_THAT(refusal("z [mm],p [kPa]\n3,2\n1,2\n"), HasSubstr("does not increase"));
+  EXPECT_THAT(refusal("z [mm],p [kPa]\n"), HasSubstr("needs at least two rows"));
 }
 
 /// A jet on its axis that gets faster up to `place`, where it meets a shock with `jump` times the pressure

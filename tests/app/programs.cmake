@@ -22,3 +22,6 @@ set_tests_properties(app.bodies PROPERTIES LABELS fast TIMEOUT 600)
 add_test(NAME app.stored_jet COMMAND ${Python3_EXECUTABLE} ${CMAKE_CURRENT_LIST_DIR}/stored_jet_test.py $<TARGET_FILE:ejecta>
          ${PROJECT_SOURCE_DIR}/cases/paper/10mm-cubic.toml)
 set_tests_properties(app.stored_jet PROPERTIES LABELS slow TIMEOUT 3600)
+# 10,000 cases drawn from the schema: a quarter of an hour.
+add_test(NAME app.random_cases COMMAND test_app --gtest_filter=RandomCases.*)
+set_tests_properties(app.random_cases PROPERTIES LABELS slow TIMEOUT 3600 ENVIRONMENT EJECTA_RANDOM_CASES=10000)

@@ -14,6 +14,7 @@ namespace {
 
 using enum Dimension;
 using testing::HasSubstr;
+using testing::Not;
 
 std::string refusal(const std::string& text, Dimension d) {
   try {
@@ -53,6 +54,40 @@ TEST(Units, GaugeAndAbsoluteReferToTheAmbientPressure) {
   EXPECT_EQ(parse_quantity("-2 bar gauge", pressure_gauge, 101325.0), -200000.0);
   EXPECT_THAT(refusal("7 bar", pressure_absolute), HasSubstr("\"7 bar gauge\" or \"7 bar absolute\""));
   EXPECT_THAT(refusal("7 bar gauge", pressure), HasSubstr("neither gauge nor absolute"));
+}
+
+TEST(Units, AsInstrumentsAndPeopleWriteThem) {
+  for (const char* seven :
+       {"7 barg", "7 bar(g)", "7 bar (g)", "7 bar g", "700 kPag", "0.7 MPa(gauge)", "7 bar gauge"})
+    EXPECT_DOUBLE_EQ(parse_quantity(seven, pressure_absolute, 101325.0), 801325.0) << seven;
+  for (const char* seven : {"7 bara", "7 bar(a)", "7 bar abs", "7 bar absolute"})
+    EXPECT_DOUBLE_EQ(parse_quantity(seven, pressure_absolute, 101325.0), 700000.0) << seven;
+  EXPECT_NEAR(parse_quantity("100 psig", pressure_absolute, 0.0), 689475.7293168, 1e-6);
+  EXPECT_NEAR(parse_quantity("100 psia", pressure_absolute, 101325.0), 689475.7293168, 1e-6);
+  EXPECT_EQ(parse_quantity("12 \u00b5m", length), 12e-6);
+  EXPECT_EQ(parse_quantity("12 \u03bcm", length), 12e-6);
+  EXPECT_EQ(parse_quantity("12 \u00b5s", time), 12e-6);
+  EXPECT_EQ(parse_quantity("5 N/mm2", pressure), 5e6);
+  EXPECT_EQ(parse_quantity("5 N/mm\u00b2", pressure), 5e6);
+  EXPECT_EQ(parse_quantity("2700 kg/m\u00b3", density), 2700.0);
+  EXPECT_EQ(parse_quantity("9.81 m/s^2", acceleration), 9.81);
+  EXPECT_DOUBLE_EQ(parse_quantity("45 \u00b0", angle), std::numbers::pi / 4);
+  EXPECT_DOUBLE_EQ(parse_quantity("45\u00b0", angle), std::numbers::pi / 4);
+  EXPECT_DOUBLE_EQ(parse_quantity("20 \u00b0C", temperature), 293.15);
+  EXPECT_NEAR(parse_quantity("68 \u00b0F", temperature), 293.15, 1e-9);
+  EXPECT_EQ(parse_quantity("18 \u00b5Pa\u00b7s", viscosity), 18e-6);
+  EXPECT_EQ(parse_quantity("8\u00a0ms", time), 8e-3) << "with a blank that does not break";
+  EXPECT_THAT(refusal("7 barg", pressure), HasSubstr("neither gauge nor absolute"));
+  EXPECT_THAT(refusal("7 g", pressure_absolute), HasSubstr("unknown unit"));
+  EXPECT_EQ(to_si(1.0, "\u00b5s", time), 1e-6);
+}
+
+TEST(Units, ACommaIsNoDecimalPoint) {
+  EXPECT_THAT(refusal("5,5 ms", time), HasSubstr("a number has a decimal point (\"5.5 ms\")"));
+  EXPECT_THAT(refusal("1,000 mm", length), Not(HasSubstr("1.000"))) << "a thousand, or one";
+  EXPECT_EQ(with_decimal_point("0,001"), "0.001");
+  EXPECT_EQ(with_decimal_point("1,2,3"), "");
+  EXPECT_EQ(with_decimal_point("8 ms"), "");
 }
 
 TEST(Units, WhatIsNoQuantityIsRefused) {

@@ -33,22 +33,6 @@ TEST(Sense, AGoodCaseHasNoWarnings) {
   for (const Word& kind : template_kinds()) EXPECT_THAT(warnings({}, kind.name), IsEmpty()) << kind.name;
 }
 
-TEST(Sense, APulseTooEarlyOrTooLateMisses) {
-  EXPECT_THAT(warnings({"launch.arrives_at=60 ms"}),
-              Contains(HasSubstr("the pulse misses \"cube\" altogether")));
-  EXPECT_THAT(warnings({"valve.opens_at=50 ms"}), Contains(HasSubstr("the jet blows from 50 ms to 59 ms")));
-  EXPECT_THAT(warnings({"valve.opens_at=50 ms", "valve.more_pulses=[\"2 ms\"]"}), IsEmpty())
-      << "a later pulse hits";
-}
-
-/// offset_along moves the path: at 3 m/s, 300 mm are 100 ms.
-TEST(Sense, TheOffsetAlongTheBeltShiftsTheMeeting) {
-  EXPECT_THAT(warnings({"launch.arrives_at=100 ms", "launch.offset_along=30 mm", "valve.opens_at=88 ms"}),
-              IsEmpty());
-  EXPECT_THAT(warnings({"launch.arrives_at=100 ms", "launch.offset_along=-30 mm", "valve.opens_at=70 ms"}),
-              Contains(HasSubstr("misses")));
-}
-
 TEST(Sense, ABodyThatIsNeverReleased) {
   EXPECT_THAT(warnings({"body.0.release_at=2 s"}, "settling"), Contains(HasSubstr("never released")));
 }

@@ -203,7 +203,7 @@ TEST_F(PathFile, WrongOnesAreRefusedWithTheirLine) {
   EXPECT_THAT(refusal("t [ms], x [mm]\n0, 1\n# still\n2\n"),
               HasSubstr("path.csv:4: error: 1 values for 2 columns"));
   EXPECT_THAT(refusal("t [ms], x [mm]\n0, 1\n2, a\n"), HasSubstr("   3 | 2, a\n      |    ^"));
-  EXPECT_THAT(refusal("t [ms], x [mm]\n0, 1\n0, 2\n"), HasSubstr("the times do not increase"));
+  EXPECT_THAT(refusal("t [ms], x [mm]\n0, 1\n0, 2\n"), HasSubstr("the column t does not increase"));
   EXPECT_THAT(refusal("t [ms], x [mm]\n0, 1\n"), HasSubstr("at least two rows"));
   EXPECT_THAT(refusal(""), HasSubstr("at least two rows"));
 }

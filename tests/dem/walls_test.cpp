@@ -33,8 +33,12 @@ std::string write_stl(const std::string& name, const TriangleMesh& mesh) {
   const std::string path = (std::filesystem::temp_directory_path() / name).string();
   std::ofstream out(path);
   out << "solid wall\n";
-  for (const auto& t : mesh.triangles)
+  for (const auto& t : mesh.triangles) {
+    out << "facet normal 0 0 0\nouter loop\n";
     for (const int c : t) out << "vertex " << mesh.vertices[static_cast<std::size_t>(c)].transpose() << "\n";
+    out << "endloop\nendfacet\n";
+  }
+  out << "endsolid wall\n";
   return path;
 }
 
@@ -48,7 +52,6 @@ Case on_mesh(const std::string& path) {
   w.kind = WallKind::mesh;
   w.material = "stone";
   w.file = path;
-  w.size = Vec3(0, 0, 5e-3);
   c.walls = {w};
   return c;
 }

@@ -130,6 +130,32 @@ TEST(PlainReport, ShowsVerdictAndNumbers) {
   EXPECT_THAT(html, HasSubstr("profile</th><td>7 values"));
 }
 
+TEST(Verdict, SaysWhetherItIsWhatWasWanted) {
+  const auto body = [](const char* name, const char* outcome, const char* judgement, double clearance) {
+    return ordered_json{{"name", name},
+                        {"outcome", outcome},
+                        {"judgement", judgement},
+                        {"clearance_at_splitter_m", clearance}};
+  };
+  const ordered_json right = body("ore", "ejected", "right", 0.02),
+                     kept = body("sand", "not ejected", "right", -0.03),
+                     by_catch = body("mud", "ejected", "by-catch", 0.01),
+                     missed = body("gem", "not ejected", "missed", -0.02);
+  const auto sentence = [](std::vector<ordered_json> list) {
+    return verdict_sentence({{"bodies", std::move(list)}});
+  };
+  EXPECT_EQ(sentence({right}),
+            "ore is right: ejected, as it should be; its centre passes 20.0 mm above the plate's edge.");
+  EXPECT_EQ(sentence({kept}),
+            "sand is right: not ejected, as it should be; its centre passes 30.0 mm below the plate's edge.");
+  EXPECT_EQ(sentence({by_catch}),
+            "mud is by-catch: ejected, and should not be; its centre passes 10.0 mm above the plate's edge.");
+  EXPECT_EQ(sentence({missed}),
+            "gem is missed: not ejected, and should be; its centre passes 20.0 mm below the plate's edge.");
+  EXPECT_EQ(sentence({right, kept, by_catch, missed}),
+            "Of 4 bodies 2 right (ore, sand), 1 by-catch (mud), 1 missed (gem).");
+}
+
 TEST(Verdict, OneSentenceForEveryKindOfRun) {
   const ordered_json missed{{"name", "a"},
                             {"outcome", "not ejected"},
@@ -144,10 +170,18 @@ TEST(Verdict, OneSentenceForEveryKindOfRun) {
             "velocity short "
             "of clearing it.");
   EXPECT_EQ(verdict_sentence(bodies({{{"name", "c"}, {"outcome", "undecided"}}})),
-            "c did not reach the plate.");
+            "c is undecided: the time limit came before it reached the plate.");
   EXPECT_EQ(verdict_sentence(bodies({hit})), "b is ejected, with 0.10 m/s of vertical velocity to spare.");
   EXPECT_EQ(verdict_sentence(bodies({missed, hit})), "1 of 2 bodies is ejected: b.");
   EXPECT_EQ(verdict_sentence(bodies({missed, missed})), "0 of 2 bodies are ejected.");
+  const ordered_json late{{"name", "c"}, {"outcome", "undecided"}};
+  EXPECT_EQ(verdict_sentence(bodies({late, late})),
+            "All 2 bodies are undecided, since the time limit came first.");
+  ordered_json cut = bodies({hit, late});
+  cut["simulated_time_s"] = 0.15;
+  EXPECT_EQ(verdict_sentence(cut),
+            "1 of 2 bodies is ejected: b; 1 undecided, since the time limit of 150 ms came first: c.");
+  EXPECT_EQ(undecided_bodies(cut), std::vector<std::string>{"c"});
   EXPECT_EQ(verdict_sentence({{"simulated_time_s", 0.02}}), "Computed 20 ms.");
   EXPECT_EQ(verdict_sentence({{"expectations", {{{"pass", true}}, {{"pass", false}}}}}),
             "1 of 2 expected values met.");

@@ -1,9 +1,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cctype>
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <sstream>
 
 #include "base/error.hpp"
 #include "shape/shape.hpp"
@@ -69,6 +71,63 @@ TEST(Stl, RefusesWhatIsBroken) {
   TriangleMesh bad = cube();
   bad.vertices[3].x() = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THROW(parse_stl(binary_stl(bad), 1, "x"), InputError);
+}
+
+std::string replaced(std::string text, const std::string& from, const std::string& to) {
+  for (std::size_t at = 0; (at = text.find(from, at)) != std::string::npos; at += to.size())
+    text.replace(at, from.size(), to);
+  return text;
+}
+
+std::string refusal_of(const std::string& bytes) {
+  try {
+    parse_stl(bytes, 1.0, "x.stl");
+  } catch (const InputError& e) {
+    return e.what();
+  }
+  return "";
+}
+
+/// However a text is divided into lines and spelt, it is the same surface.
+TEST(Stl, WritersDifferInWhatDoesNotMatter) {
+  const std::string text = text_stl(cube());
+  const TriangleMesh right = parse_stl(text, 1.0, "x");
+  std::string capitals = text;
+  for (char& c : capitals) c = static_cast<char>(std::toupper(c));
+  for (const std::string& same :
+       {capitals, "\xEF\xBB\xBF" + text, "\n  " + text, replaced(text, "\n", "\r\n"),
+        replaced(text, "\n", " \n\n\t"), replaced(text, "vertex ", "vertex\n"),
+        replaced(replaced(text, "\n", " "), "endsolid", "\nendsolid"), text + "\n\n",
+        text + std::string(3, '\0'), text + "\x1a", replaced(text, " 0.500000", " +5.0D-01"),
+        replaced(text, " 0.500000", " 50.d-2"),
+        "solid" + text.substr(text.find('\n')).substr(0, text.rfind("endsolid") - text.find('\n')) +
+            "endsolid"}) {
+    const TriangleMesh mesh = parse_stl(same, 1.0, "x");
+    EXPECT_EQ(mesh.triangles, right.triangles) << same.substr(0, 200);
+    for (std::size_t n = 0; n < mesh.vertices.size(); ++n) EXPECT_EQ(mesh.vertices[n], right.vertices[n]);
+  }
+}
+
+/// What is cut, lost or meant otherwise is refused with its line: never another surface in silence.
+TEST(Stl, WhatIsCutOrMeantOtherwiseIsRefusedWithItsLine) {
+  const std::string text = text_stl(cube());
+  for (std::size_t length = 1; length + 9 < text.size(); ++length)  // "endsolid" may lack its name
+    EXPECT_NE(refusal_of(text.substr(0, length)), "") << length;
+  std::vector<std::string> lines;
+  std::istringstream in(text);
+  for (std::string line; std::getline(in, line);) lines.push_back(line);
+  for (std::size_t lost = 0; lost < lines.size(); ++lost) {
+    std::string less;
+    for (std::size_t n = 0; n < lines.size(); ++n)
+      if (n != lost) less += lines[n] + "\n";
+    EXPECT_NE(refusal_of(less), "") << "without line " << lost + 1;
+  }
+  EXPECT_THAT(refusal_of(replaced(text, "0.500000", "0,500000")), HasSubstr("has a decimal comma"));
+  EXPECT_THAT(refusal_of(replaced(text, " 0.500000", " 0.500000;")), HasSubstr("x.stl:"));
+  EXPECT_THAT(refusal_of(text + "and more\n"), HasSubstr("expected \"solid\", found \"and\""));
+  const std::string binary = binary_stl(cube());
+  EXPECT_THAT(refusal_of(binary + "more"), HasSubstr("are no part of it"));
+  EXPECT_THAT(refusal_of(binary.substr(0, binary.size() - 1)), HasSubstr("cut short"));
 }
 
 TEST(Mesh, NamesTheOpenEdge) {

@@ -105,23 +105,49 @@ TEST(Valve, TotalPressureGoesFromAmbientToSupply) {
 }
 
 TEST(Valve, TraceIsInterpolatedAndClosedOutside) {
-  const Valve valve = traced("good", "time,opening\n# measured\n0,0\n0.002,1\n0.008,1\n0.009,0\n");
+  const Valve valve = traced("good", "time [s],opening [1]\n# measured\n0,0\n0.002,1\n0.008,1\n0.009,0\n");
   EXPECT_NEAR(valve.opening(1.5e-3 + 1e-3), 0.5, 1e-12);
   EXPECT_NEAR(valve.opening(1.5e-3 + 8.5e-3), 0.5, 1e-9);
   EXPECT_EQ(valve.opening(20e-3), 0.0);
 }
 
+/// The same opening, as recorders and spreadsheets write it.
+TEST(Valve, ATraceIsReadInTheUnitsOfItsHead) {
+  using testing::HasSubstr;
+  for (const char* text : {"0,0\n0.002,1\n0.006,1\n0.008,0\n", "time [ms],opening [1]\n0,0\n2,1\n6,1\n8,0\n",
+                           "time (ms), opening (%)\n0, 0\n2, 100\n6, 100\n8, 0\n",
+                           "\xEF\xBB\xBFZeit [ms];Weg [%]\r\n0,0;0\r\n2,0;100,0\r\n6,0;100,0\r\n8,0;0\r\n",
+                           "t / us\topening\n0\t0\n2000\t1\n6000\t1\n8000\t0\n",
+                           "\"t [\u00b5s]\",\"opening\"\n0,0\n2e3,1\n6e3,1\n8e3,0\n"}) {
+    const Valve valve = traced("units", text);
+    for (const double ms : {0.5, 1.0, 4.0, 7.5})
+      EXPECT_NEAR(valve.opening(1.5e-3 + ms * 1e-3),
+                  ms < 2.0   ? ms / 2.0
+                  : ms > 6.0 ? (8.0 - ms) / 2.0
+                             : 1.0,
+                  1e-9)
+          << ms << " ms of\n"
+          << text;
+  }
+  EXPECT_THAT(refusal([] { traced("bare", "time,opening\n0,0\n2,1\n"); }),
+              HasSubstr("bare.csv:1: error: the column \"time\" has no unit"));
+  EXPECT_THAT(refusal([] { traced("metres", "time [mm],opening\n0,0\n2,1\n"); }),
+              HasSubstr("\"mm\" is no unit of a time"));
+  EXPECT_THAT(refusal([] { traced("comma", "time [ms],opening\n0,5,0,1\n2,5,1,0\n"); }),
+              HasSubstr("comma.csv:2: error: 4 values for 2 columns"));
+}
+
 TEST(Valve, RefusesBadTraces) {
   using testing::HasSubstr;
-  EXPECT_THAT(refusal([] { traced("disorder", "0,0\n0.002,1\n0.001,0\n"); }), HasSubstr("do not increase"));
+  EXPECT_THAT(refusal([] { traced("disorder", "0,0\n0.002,1\n0.001,0\n"); }), HasSubstr("does not increase"));
   EXPECT_THAT(refusal([] { traced("missing", "0,0\n0.002,\n0.003,0\n"); }), HasSubstr("missing.csv:2"));
-  EXPECT_THAT(refusal([] { traced("range", "0,0\n0.002,1.2\n0.003,0\n"); }), HasSubstr("outside 0..1"));
+  EXPECT_THAT(refusal([] { traced("range", "0,0\n0.002,1.2\n0.003,0\n"); }), HasSubstr("outside 0 to 1"));
   EXPECT_THAT(refusal([] { traced("nan", "0,0\n0.002,nan\n0.003,0\n"); }), HasSubstr("nan.csv:2"));
   EXPECT_THAT(refusal([] { traced("closed", "0,0\n0.002,0\n"); }), HasSubstr("never opens"));
   std::string sampled;
   for (int n = 0; n < 60; ++n)
     if (n < 20 || n > 45) sampled += std::to_string(n * 1e-3) + ",0.5\n";
-  EXPECT_THAT(refusal([&] { traced("gap", sampled); }), HasSubstr("gap from 0.019 s to 0.046 s"));
+  EXPECT_THAT(refusal([&] { traced("gap", sampled); }), HasSubstr("gap from 19 ms to 46 ms"));
 }
 
 TEST(Valve, RefusesAValveThatNeverBlows) {

@@ -87,7 +87,7 @@ int run_command_line(int argc, const char* const* argv) {
   app.footer(
       "`ejecta COMMAND --help` explains a command.\n"
       "Exit codes: 0 done, 1 failure, 2 bad input, 3 diverged, 4 stopped and resumable, 5 validation "
-      "failed.");
+      "failed,\n6 ended before the verdict.");
   app.failure_message(failure);
   Action action;
   for (auto* add : {add_run, add_check, add_plan, add_explain, add_new, add_jet, add_validate, add_bench,

@@ -24,7 +24,7 @@ void add_run_options(CLI::App& command, RunCommand& o) {
   command.add_flag("-v,--verbose", o.run.verbose, "Print every step");
 }
 
-/// Wishes that contradict each other.
+/// Options that contradict each other.
 void require_sense(const RunOptions& o) {
   if (o.force && o.resume)
     throw InputError("--resume goes on with a run, --force starts anew: give one of them");
@@ -48,6 +48,7 @@ void add_run(CLI::App& app, Action& action) {
   command->callback([o, &action] {
     action = [o] {
       require_sense(o->run);
+      o->run.overrides = o->input.overrides;
       return run_case(load_and_warn(o->input, o->run.quiet), o->run);
     };
   });
@@ -71,8 +72,12 @@ void add_jet(CLI::App& app, Action& action) {
   command->footer(
       "Examples:\n  ejecta jet cases/paper/jet-700kPa.toml\n  ejecta jet cases/paper/jet-700kPa.toml "
       "--sweep");
-  command->callback(
-      [o, &action] { action = [o] { return jet_case(load_and_warn(o->input, o->run.quiet), o->run); }; });
+  command->callback([o, &action] {
+    action = [o] {
+      o->run.overrides = o->input.overrides;
+      return jet_case(load_and_warn(o->input, o->run.quiet), o->run);
+    };
+  });
 }
 
 void add_bench(CLI::App& app, Action& action) {

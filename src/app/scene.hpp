@@ -1,0 +1,25 @@
+#pragma once
+#include <optional>
+#include <vector>
+
+#include "case/case.hpp"
+#include "dem/particles.hpp"
+#include "grid/grid.hpp"
+#include "sorter/launch.hpp"
+#include "sorter/splitter.hpp"
+
+namespace ejecta {
+
+/// Who is there when a run starts: bodies in their places, walls of the case and of the grid, the plate.
+/// `check` and `run` set it up with this function, so that what one refuses the other refuses.
+struct Scene {
+  Particles particles;
+  std::vector<FlightState> starts;  ///< of each body
+  std::optional<Splitter> splitter;
+};
+
+/// `c` with its copies written out; `grid` of a case with a flow, else null. Throws InputError for what
+/// cannot be built and for bodies that start in each other or in a wall.
+Scene make_scene(const Case& c, const Grid* grid);
+
+}  // namespace ejecta

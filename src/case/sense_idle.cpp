@@ -1,0 +1,203 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string_view>
+#include <vector>
+
+#include "base/text.hpp"
+#include "case/findings.hpp"
+#include "case/schema.hpp"
+
+/// Keys that the user gave and that change nothing: who wrote them meant something. What another model would
+/// take (flow.solver, flow.turbulence, contact.law, jet.kind) may stand: one switches between models to
+/// compare.
+namespace ejecta {
+namespace {
+
+using Names = std::vector<std::string_view>;
+
+/// What is asked of one table of the case.
+class Idle {
+ public:
+  Idle(const Case& c, std::string section, Findings& found)
+      : case_(c), section_(std::move(section)), found_(found) {}
+
+  bool given(std::string_view key) const { return case_.given.contains(fmt::format("{}.{}", section_, key)); }
+
+  /// Each given one of `names` is an error: `why` it cannot act, and what to do instead.
+  void refuse(const Names& names, const std::string& why, const std::string& expected,
+              const std::string& example = "") {
+    for (const std::string_view name : names)
+      if (given(name))
+        found_.error(fmt::format("{}.{}", section_, name),
+                     fmt::format("`{}` does nothing here: {}", name, why), expected, example);
+  }
+
+ private:
+  const Case& case_;
+  std::string section_;
+  Findings& found_;
+};
+
+/// Which of the keys that only some kinds have a kind takes.
+struct Takes {
+  Names all, mine;
+};
+
+template <class Kind>
+void refuse_of_other_kinds(Idle& idle, const Takes& takes, Kind kind, const char* key) {
+  std::vector<std::string> mine(takes.mine.begin(), takes.mine.end());
+  for (const std::string_view name : takes.all)
+    if (std::find(takes.mine.begin(), takes.mine.end(), name) == takes.mine.end())
+      idle.refuse({name}, fmt::format("{} is \"{}\"", key, word(kind)),
+                  mine.empty() ? fmt::format("no `{}`, or another {}", name, key)
+                               : fmt::format("no `{}`, or another {}; \"{}\" takes {}", name, key, word(kind),
+                                             joined(mine)));
+}
+
+Names shape_keys(const BodySpec& b) {
+  switch (b.shape) {
+    case ShapeKind::sphere:
+      return {"diameter"};
+    case ShapeKind::box:
+      return {"size"};
+    case ShapeKind::superquadric:
+      return {"size", "exponents"};
+    case ShapeKind::cluster:
+      return {"size", "cluster", "sphere_diameter", "true_box_mass"};
+    case ShapeKind::multisphere:
+      if (b.fit_error > 0.0) return {"file", "fit_error", "scale"};
+      return {"spheres", "fit_error"};
+    case ShapeKind::polyhedron:
+      return {"vertices"};
+    case ShapeKind::mesh:
+      return {"file", "files", "fit_error", "scale"};
+  }
+  return {};
+}
+
+void look_at_body(const BodySpec& b, Idle idle) {
+  refuse_of_other_kinds(idle,
+                        {{"diameter", "size", "spheres", "cluster", "sphere_diameter", "vertices", "file",
+                          "files", "fit_error", "scale", "exponents", "true_box_mass"},
+                         shape_keys(b)},
+                        b.shape, "shape");
+  if (b.on_belt) {
+    idle.refuse({"position"}, "[launch] says where a body from the belt is",
+                "`along` and `across`, or `behind` and `gap`, in this [[body]]; or no on_belt",
+                "along = \"-26 mm\"");
+    idle.refuse({"velocity"}, "[launch] says how fast a body from the belt is",
+                "launch.belt_speed, or no on_belt", "[launch] belt_speed = \"3 m/s\"");
+    idle.refuse({"release_at", "enters_at"}, "[launch] says when a body from the belt comes",
+                "launch.arrives_at, or no on_belt", "[launch] arrives_at = \"4 ms\"");
+  } else {
+    idle.refuse({"along", "across", "behind", "gap"}, "the body does not come from the belt",
+                "on_belt = true, or `position`", "on_belt = true");
+  }
+  if (!b.behind.empty())
+    idle.refuse({"along"}, "`behind` and `gap` say where the body lies along the belt", "either of the two",
+                "gap = \"12 mm\"");
+  else
+    idle.refuse({"gap"}, "it is not said to which body", "behind = \"name of the body ahead\"",
+                "behind = \"cube\"");
+  if (b.mass)
+    idle.refuse({"density", "true_box_mass"}, "`mass` is given", "either of the two", "mass = \"2.7 g\"");
+  if (b.motion == Motion::fixed)
+    idle.refuse({"velocity", "spin", "release_at"}, "motion is \"fixed\"",
+                "motion = \"free\" or \"prescribed\"", "motion = \"prescribed\"");
+  if (b.copies == 1) idle.refuse({"every"}, "there is one body", "copies, or no `every`", "copies = 10");
+  if (b.random_rotation)
+    idle.refuse({"rotation_axis", "rotation_angle"}, "random_rotation turns the body at random",
+                "either of the two");
+  else if (!idle.given("rotation_angle") && b.path.empty())
+    idle.refuse({"rotation_axis"}, "no angle is given", "rotation_angle beside it",
+                "rotation_angle = \"45 deg\"");
+}
+
+Names wall_keys(const WallSpec& w) {
+  switch (w.kind) {
+    case WallKind::plane:
+      return {"normal"};
+    case WallKind::plate:
+    case WallKind::belt:
+      return {"normal", "size"};
+    case WallKind::box:
+      return {"size", "rotation_axis", "rotation_angle"};
+    case WallKind::mesh:
+      return {"file", "scale", "rotation_axis", "rotation_angle", "two_sided"};
+  }
+  return {};
+}
+
+void look_at_wall(const WallSpec& w, Idle idle) {
+  refuse_of_other_kinds(
+      idle,
+      {{"normal", "size", "file", "scale", "rotation_axis", "rotation_angle", "two_sided"}, wall_keys(w)},
+      w.kind, "kind");
+  if (!idle.given("rotation_angle"))
+    idle.refuse({"rotation_axis"}, "no angle is given", "rotation_angle beside it",
+                "rotation_angle = \"45 deg\"");
+}
+
+/// Of a face or of a disc in it.
+void look_at_inflow(const Case& c, BoundaryType type, bool patches, Idle idle) {
+  const bool incompressible = c.flow.solver == FlowSolver::incompressible;
+  const auto because = [&] { return fmt::format("a face of type \"{}\" does not take it", word(type)); };
+  const bool moves =
+      type == BoundaryType::velocity || type == BoundaryType::moving_wall ||
+      (!incompressible && (type == BoundaryType::free_stream || type == BoundaryType::wave_transmissive ||
+                           type == BoundaryType::pressure_outlet));
+  if (!moves)
+    idle.refuse({"velocity"}, because(),
+                type == BoundaryType::wall ? "type = \"moving-wall\" or \"velocity\"" : "type = \"velocity\"",
+                type == BoundaryType::wall ? "type = \"moving-wall\"" : "type = \"velocity\"");
+  if (type != BoundaryType::total_pressure)
+    idle.refuse({"total_pressure", "total_temperature"}, because(), "type = \"total-pressure\"",
+                "type = \"total-pressure\"");
+  const bool closed = type == BoundaryType::wall || type == BoundaryType::moving_wall ||
+                      type == BoundaryType::slip || type == BoundaryType::symmetry ||
+                      type == BoundaryType::periodic || type == BoundaryType::jet;
+  if (closed && !patches)
+    idle.refuse({"pressure", "density", "k", "epsilon"}, because(), "no such key, or an open face");
+  if (closed && !patches && !(type == BoundaryType::wall || type == BoundaryType::moving_wall))
+    idle.refuse({"temperature"}, because(), "no such key, or an open face");
+}
+
+void look_at_valve(const ValveSpec& v, Idle idle) {
+  if (v.shape == ValveShape::trace)
+    idle.refuse({"rise_time", "fall_time"}, "the trace says how the valve opens", "either of the two",
+                "shape = \"smooth\"");
+  else
+    idle.refuse({"trace"}, fmt::format("shape is \"{}\"", word(v.shape)), "shape = \"trace\"",
+                "shape = \"trace\"");
+}
+
+void look_at_plate(const SplitterSpec& s, Idle idle) {
+  if (s.edge)
+    idle.refuse({"distance", "height"}, "`edge` says where the plate is",
+                "either edge (fixed to the machine), or distance and height (above the undisturbed path)",
+                "edge = [\"250 mm\", \"60 mm\"]");
+}
+
+}  // namespace
+
+void sense_idle(const Case& c, Findings& found) {
+  const auto table = [&](const std::string& name) { return Idle(c, name, found); };
+  for (std::size_t n = 0; n < c.bodies.size(); ++n)
+    look_at_body(c.bodies[n], table(fmt::format("body.{}", n)));
+  for (std::size_t n = 0; n < c.walls.size(); ++n) look_at_wall(c.walls[n], table(fmt::format("wall.{}", n)));
+  for (std::size_t f = 0; f < 6; ++f) {
+    const BoundarySpec& face = c.boundary[f];
+    const std::string name = std::string("boundary.") + face_names[f];
+    look_at_inflow(c, face.type, !face.patches.empty(), table(name));
+    for (std::size_t n = 0; n < face.patches.size(); ++n)
+      look_at_inflow(c, face.patches[n].type, false, table(fmt::format("{}.patch.{}", name, n)));
+  }
+  look_at_valve(c.valve, table("valve"));
+  look_at_plate(c.splitter, table("splitter"));
+  if (c.contact.time_step)
+    table("contact").refuse({"time_step_fraction"}, "time_step is given", "either of the two",
+                            "time_step = \"1 us\"");
+}
+
+}  // namespace ejecta
