@@ -350,6 +350,12 @@ void CutFlow::move_small(const CutCells& cut, const std::array<ConstFieldView, 3
     const int apart = std::abs(to[0] - at[0]) + std::abs(to[1] - at[1]) + std::abs(to[2] - at[2]);
     const Real near = std::min(Real(4) * c.fluid - Real(1), Real(1));  // to a cell of its own
     if (apart != 1 || near <= Real(0) || c.walls == 0) return;
+    // What passes between two small cells follows from both: each by the other they would run away.
+    const Cell opposite{2 * at[0] - to[0], 2 * at[1] - to[1], 2 * at[2] - to[2]};
+    bool inside = true;
+    for (std::size_t d = 0; d < 3; ++d)
+      inside = inside && opposite[d] >= 0 && opposite[d] < grid_.n(static_cast<int>(d));
+    if (inside && cut.small_at(opposite[0], opposite[1], opposite[2])) return;
     // Relative to the solid, so that round-off of the geometry does not count where all moves with it.
     const Triple solid = cut.walls[static_cast<std::size_t>(c.first_wall)].velocity;
     Real out = 0, across = 0;
@@ -523,6 +529,29 @@ void CutFlow::face_velocities(const CutCells& cut, const std::array<ConstFieldVi
     }
   });
   hold_closed(cut, q);
+}
+
+void CutFlow::end_velocities(const CutCells& cut, const OpenFace& open,
+                             const std::array<ConstFieldView, 3>& u, ConstFieldView p, Real dt,
+                             const std::array<FieldView, 3>& q) const {
+  for_each_index(static_cast<int>(cut.cells.size()), [&](int n) {
+    const CutCell& c = cut.cells[static_cast<std::size_t>(n)];
+    if (c.carrier < 0) return;
+    const Cell at{c.i, c.j, c.k};
+    for (int side = 0; side < 6; ++side) {
+      const int d = side / 2;
+      const std::size_t s = static_cast<std::size_t>(d);
+      Cell face = at;
+      face[s] += side % 2;
+      if (!grid_.active(d) || face[s] != (side % 2 ? grid_.n(d) : 0) || !open(side, face)) continue;
+      Real& velocity = q[s](face[0], face[1], face[2]);
+      velocity = u[s](c.i, c.j, c.k);
+      if (c.carrier != n) continue;
+      const Real* above = &p(face[0], face[1], face[2]);
+      const Real at_face = (above[0] - above[-stride(p, d)]) * grid_.metrics(d).inv_distance[face[s]];
+      velocity += dt * (gradient_[static_cast<std::size_t>(n)][s] - at_face);
+    }
+  });
 }
 
 void CutFlow::close(const CutCells& cut, const std::array<FieldView, 3>& q) {

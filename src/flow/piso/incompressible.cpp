@@ -167,6 +167,10 @@ void Incompressible::correct(const CutCells& cut, Real dt) {
     face_velocities(grid_, std::as_const(*this).views(u_star_), p_.view(), filter_time, views(q_));
     cut_flow_.face_velocities(cut, std::as_const(*this).views(u_star_), p_.view(), filter_time, views(q_));
     boundaries_.fill_face_velocity(views(q_), views(u_star_), p_.view(), dt);
+    const auto open = [this](int side, const std::array<int, 3>& face) {
+      return boundaries_.kind(side) == BoundaryKind::open && !boundaries_.prescribed_on(side / 2, face);
+    };
+    cut_flow_.end_velocities(cut, open, std::as_const(*this).views(u_star_), p_.view(), dt, views(q_));
     cut_flow_.close(cut, views(q_));
     divergence(grid_, std::as_const(*this).views(q_), dt, phi_.view());
     CutFlow::fold(cut, phi_.view());
