@@ -68,7 +68,8 @@ def main(ejecta, case, scratch, kills=4):
                 hard = draw.random() < 0.5
                 run.send_signal(signal.SIGKILL if hard else signal.SIGTERM)
                 code = run.wait()
-                if code not in (-signal.SIGKILL, 4, *DONE):
+                # -SIGTERM: it had not begun to listen, while it was being set up.
+                if code not in (-signal.SIGKILL, -signal.SIGTERM, 4, *DONE):
                     raise SystemExit(f"failed: exit code {code} of a run that was asked to stop")
                 done += 1
             if code in DONE:
