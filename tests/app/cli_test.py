@@ -63,7 +63,7 @@ report = false
 
 def ejecta(*arguments, **environment):
     return subprocess.run(
-        [EJECTA, *arguments], capture_output=True, text=True, timeout=60, env={**os.environ, **environment}
+        [EJECTA, *arguments], capture_output=True, text=True, timeout=240, env={**os.environ, **environment}
     )
 
 
