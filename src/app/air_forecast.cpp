@@ -7,7 +7,6 @@
 #include "app/air_limits.hpp"
 #include "app/jet_source.hpp"
 #include "app/prospect.hpp"
-#include "case/copies.hpp"
 #include "case/extent.hpp"
 
 namespace ejecta {
@@ -44,21 +43,13 @@ double dying_time(const Case& original) {
   return std::sqrt(moment / (4.0 * kDeadAir * k * k * (high - low)));
 }
 
-/// The air may be over before the run is.
-bool stops_the_air(const Case& c) {
-  return c.flow.solver != FlowSolver::none && has_jet(c) && c.run.until == RunUntil::verdict;
-}
-
 }  // namespace
 
 double jet_speed(const Case& c) { return peak_speed(*jet_of(c), c.run.end_time, jet_height(c)); }
 
-double air_until(const Case& c) {
-  return stops_the_air(c) ? air_until(c, company_of(with_first_copies(c))) : c.run.end_time;
-}
-
 double air_until(const Case& c, const Company& company) {
-  if (!stops_the_air(c)) return c.run.end_time;
+  if (c.flow.solver == FlowSolver::none || !has_jet(c) || c.run.until != RunUntil::verdict)
+    return c.run.end_time;
   const double closed = jet_of(c)->dead_from();
   double leave = 0.0;  // until the last body that nothing disturbs has left the box for good
   for (std::size_t n = 0; n < company.bodies.size(); ++n)

@@ -13,8 +13,6 @@ double jet_speed(const Case& c);
 
 /// Until when the air is computed, s. A run that waits for its verdict stops it (CoupledModel::watch_air)
 /// when no body is in the box any more, or when it has died away.
-double air_until(const Case& c);
-/// The same where the bodies are there already: building those of large surfaces takes seconds.
 double air_until(const Case& c, const Company& company);
 
 /// Steps of the air until then, where a jet and the Courant number set them.

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 #include "app/computed_jet.hpp"
 #include "app/flow_model.hpp"
@@ -233,35 +234,32 @@ void check_source_case(const Case& c, std::vector<Problem>& found) {
   }
 }
 
-/// Whether an open surface looks downwards, so that what falls on it falls through: its area as a vector,
-/// which is zero for a closed one.
-bool looks_down(const TriangleMesh& mesh, const WallSpec& w, const Vec3& gravity) {
+/// Whether what falls on an open surface falls through.
+bool looks_down(const Surface& surface, const Vec3& gravity) {
+  if (surface.closed() || surface.two_sided()) return false;
   Vec3 sum(0, 0, 0);
   double area = 0.0;
-  for (const auto& t : mesh.triangles) {
-    const auto corner = [&](std::size_t k) { return mesh.vertices[static_cast<std::size_t>(t[k])]; };
-    const Vec3 twice = (corner(1) - corner(0)).cross(corner(2) - corner(0));
-    sum += twice;
-    area += twice.norm();
+  for (const Surface::Triangle& t : surface.triangles()) {
+    const double twice = (t.corners[1] - t.corners[0]).cross(t.corners[2] - t.corners[0]).norm();
+    sum += twice * t.normal;
+    area += twice;
   }
-  const Vec3 turned = Eigen::AngleAxisd(w.rotation_angle, w.rotation_axis.normalized()) * sum;
-  return turned.dot(gravity) > 0.3 * area * gravity.norm();
+  return sum.dot(gravity) > 0.3 * area * gravity.norm();
 }
 
 /// A surface of a wall whose file has other units, or which bodies meet on the wrong side.
-void ask_about_walls(const Case& c, std::vector<Problem>& found) {
+void ask_about_walls(const Case& c, std::span<const Wall> walls, std::vector<Problem>& found) {
   for (std::size_t n = 0; n < c.walls.size(); ++n) {
     const WallSpec& w = c.walls[n];
     if (w.kind != WallKind::mesh) continue;
-    const TriangleMesh mesh = read_stl(beside_case(c, w.file), w.scale);
-    if (!w.two_sided && looks_down(mesh, w, c.environment.gravity))
+    if (looks_down(*walls[n].surface, c.environment.gravity))
       found.push_back(
           {.key = fmt::format("wall.{}.file", n),
            .what = "the surface is open and its normals look down: what falls on it falls through",
            .expected = "triangles that turn the other way, or both sides of it",
            .example = "two_sided = true",
            .severity = Severity::warning});
-    const double across = extent_of(mesh).norm();
+    const double across = extent_of(read_stl(beside_case(c, w.file), w.scale)).norm();
     if (w.scale == 1.0 && across > kHugeWall)
       found.push_back({.key = fmt::format("wall.{}.file", n),
                        .what = fmt::format("the wall is {} across", mm(across)),
@@ -382,7 +380,7 @@ std::vector<Problem> check_bodies(const Case& c, const Grid& grid, std::span<con
   return found;
 }
 
-std::vector<Problem> check_bodies(const Case& original) {
+std::vector<Problem> check_bodies(const Case& original, std::optional<Scene>* set_up) {
   const bool flows = original.flow.solver != FlowSolver::none;
   const Case c = with_first_copies(original);
   std::vector<Problem> found;
@@ -415,15 +413,16 @@ std::vector<Problem> check_bodies(const Case& original) {
     add_refusal(c, refusal, found);
     return found;
   }
-  ask_about_walls(c, found);
+  ask_about_walls(c, scene->particles.walls(), found);  // those of the case stand first
   const auto more = check_prospects(c, company_of(*scene), scene->splitter ? &*scene->splitter : nullptr);
   found.insert(found.end(), more.begin(), more.end());
+  if (set_up) *set_up = std::move(scene);
   return found;
 }
 
 Case load_checked(const std::string& path, const std::vector<std::string>& overrides,
-                  std::vector<Problem>* warnings) {
-  return load_case(path, overrides, warnings, [](const Case& c) { return check_bodies(c); });
+                  std::vector<Problem>* warnings, std::optional<Scene>* scene) {
+  return load_case(path, overrides, warnings, [scene](const Case& c) { return check_bodies(c, scene); });
 }
 
 }  // namespace ejecta

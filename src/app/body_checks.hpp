@@ -1,7 +1,9 @@
 #pragma once
+#include <optional>
 #include <span>
 #include <vector>
 
+#include "app/scene.hpp"
 #include "case/case.hpp"
 #include "case/problem.hpp"
 #include "dem/body.hpp"
@@ -33,11 +35,12 @@ std::string resolution_words(const Resolution& r, const Body& body);
 /// Of the bodies of a case, in its order, as they start.
 std::vector<Problem> check_bodies(const Case& c, const Grid& grid, std::span<const Body> bodies);
 
-/// The same for a case that was just read; what cannot be built is a problem too.
-std::vector<Problem> check_bodies(const Case& c);
+/// The same for a case that was just read; what cannot be built is a problem too. `scene` receives what was
+/// set up (see scene_of), if there is no error.
+std::vector<Problem> check_bodies(const Case& c, std::optional<Scene>* scene = nullptr);
 
-/// Reads a case file and checks its bodies as well (see load_case).
+/// Reads a case file and checks its bodies as well (see load_case and check_bodies).
 Case load_checked(const std::string& path, const std::vector<std::string>& overrides = {},
-                  std::vector<Problem>* warnings = nullptr);
+                  std::vector<Problem>* warnings = nullptr, std::optional<Scene>* scene = nullptr);
 
 }  // namespace ejecta

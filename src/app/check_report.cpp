@@ -49,8 +49,8 @@ std::string time_words(double seconds) {
 
 std::string length_words(double metres) { return fmt::format("{:.3g} mm", 1e3 * metres); }
 
-std::string flow_part(const Case& c, double bandwidth) {
-  const Forecast f = forecast(c);
+std::string flow_part(const Case& c, const Company& company, double bandwidth) {
+  const Forecast f = forecast(c, company);
   std::string text = fmt::format("  flow         {}, {}\n", word(c.flow.solver), word(c.flow.turbulence));
   text += fmt::format("  cells        {} ({} to {} across, {:.3g} to {:.3g} mm3)\n", f.cells,
                       length_words(f.smallest_cell), length_words(f.largest_cell), 1e9 * f.smallest_volume,
@@ -118,20 +118,22 @@ std::string course_words(const Case& c, const Body& body) {
   return text + fmt::format(", to ({:.4g}, {:.4g}, {:.4g}) mm", 1e3 * at.x(), 1e3 * at.y(), 1e3 * at.z());
 }
 
-std::string body_part(const Case& c, const Company& company, std::size_t n, const Splitter* plate) {
+/// `grid`: null without a flow.
+std::string body_part(const Case& c, const Company& company, const Grid* grid, std::size_t n,
+                      const Splitter* plate) {
   const BodySpec& b = c.bodies[n];
   const Body& body = company.bodies[n];
   std::string text = fmt::format("  body         \"{}\", {}, {}: {}", b.name, word(b.shape), word(b.motion),
                                  size_words(body));
-  const bool flows = c.flow.solver != FlowSolver::none;
-  if (flows) {
+  const bool jet = grid && has_jet(c);
+  if (grid) {
     const Vec3 at = b.on_belt ? place_of_interest(c, b) : body.position;
-    text += fmt::format(", {}", resolution_words(resolution_of(make_grid(c), body, at), body));
+    text += fmt::format(", {}", resolution_words(resolution_of(*grid, body, at), body));
   }
   if (!b.file.empty() || !b.files.empty()) text += parts_words(body.shape);
   if (body.course) text += course_words(c, body);
-  if (body.motion != Motion::fixed && (b.on_belt || plate || (flows && has_jet(c)))) {
-    const std::string prospects = prospect_words(prospect_of(c, company, n, plate), flows && has_jet(c));
+  if (body.motion != Motion::fixed && (b.on_belt || plate || jet)) {
+    const std::string prospects = prospect_words(prospect_of(c, company, n, plate), jet);
     if (!prospects.empty()) text += "\n               undisturbed: " + prospects;
   }
   return text + "\n";
@@ -176,19 +178,22 @@ std::string plate_part(const Case& c, const Splitter* plate) {
 
 }  // namespace
 
-std::string check_report(const Case& c, const std::vector<Problem>& warnings, double bandwidth) {
+std::string check_report(const Case& c, const Scene& scene, const std::vector<Problem>& warnings,
+                         double bandwidth) {
   std::string text =
       fmt::format("{}{}\n", c.path, c.run.title.empty() ? "" : fmt::format(": {}", c.run.title));
-  if (c.flow.solver == FlowSolver::none)
-    text += fmt::format("  flow         none, up to {}\n", format_quantity(c.run.end_time, Dimension::time));
-  else text += flow_part(c, bandwidth);
-  const Case all = with_first_copies(c);
-  std::optional<Grid> grid;
-  if (c.flow.solver != FlowSolver::none) grid.emplace(make_grid(c));
-  const Scene scene = make_scene(all, grid ? &*grid : nullptr);
-  const Splitter* plate = scene.splitter ? &*scene.splitter : nullptr;
   const Company company = company_of(scene);
-  for (std::size_t n = 0; n < all.bodies.size(); ++n) text += body_part(all, company, n, plate);
+  std::optional<Grid> grid;
+  if (c.flow.solver != FlowSolver::none) {
+    grid.emplace(make_grid(c));
+    text += flow_part(c, company, bandwidth);
+  } else {
+    text += fmt::format("  flow         none, up to {}\n", format_quantity(c.run.end_time, Dimension::time));
+  }
+  const Case all = with_first_copies(c);
+  const Splitter* plate = scene.splitter ? &*scene.splitter : nullptr;
+  for (std::size_t n = 0; n < all.bodies.size(); ++n)
+    text += body_part(all, company, grid ? &*grid : nullptr, n, plate);
   for (const WallSpec& w : c.walls) text += wall_part(c, w);
   text += valve_part(c) + plate_part(c, plate);
   const std::vector<output::Assumption> assumed = assumptions(c);

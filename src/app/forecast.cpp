@@ -8,6 +8,7 @@
 #include "app/air_forecast.hpp"
 #include "app/jet_source.hpp"
 #include "base/parallel.hpp"
+#include "case/copies.hpp"
 #include "case/expression.hpp"
 #include "case/load.hpp"
 #include "dem/course.hpp"
@@ -140,10 +141,12 @@ double disk_space(const Case& c, const Grid& grid, const Forecast& f) {
 
 }  // namespace
 
-Forecast forecast(const Case& c) {
+Forecast forecast(const Case& c) { return forecast(c, company_of(with_first_copies(c))); }
+
+Forecast forecast(const Case& c, const Company& company) {
   Forecast f;
   f.time_step = c.run.time_step.value_or(c.run.time_step_max);
-  f.air_until = air_until(c);
+  f.air_until = air_until(c, company);
   if (!has_flow(c)) return f;
   const Grid grid = grid_of(c);
   f.cells = grid.cells();

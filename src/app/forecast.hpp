@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "app/prospect.hpp"
 #include "case/case.hpp"
 #include "case/problem.hpp"
 
@@ -21,13 +22,17 @@ struct Forecast {
   double disk = 0.0;    ///< bytes
 };
 Forecast forecast(const Case& c);
+/// The same where the bodies are there already: building those of large surfaces takes seconds.
+Forecast forecast(const Case& c, const Company& company);
 
 /// Seconds that the steps take at the rate (bytes/s) at which this machine moves data.
 double expected_seconds(const Case& c, const Forecast& f, double bandwidth);
 /// Measured in about a tenth of a second, bytes/s.
 double measured_bandwidth();
 
-/// All of it as the text of `ejecta check`, with the warnings of the case.
-std::string check_report(const Case& c, const std::vector<Problem>& warnings, double bandwidth);
+/// All of it as the text of `ejecta check`, with the warnings of the case; `scene`: of the case, see
+/// scene_of.
+std::string check_report(const Case& c, const Scene& scene, const std::vector<Problem>& warnings,
+                         double bandwidth);
 
 }  // namespace ejecta

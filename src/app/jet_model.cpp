@@ -21,7 +21,7 @@ PatchSpec orifice_of(const Case& c) {
 
 }  // namespace
 
-void require_jet_case(const Case& c) {
+const Case& require_jet_case(const Case& c) {
   const PatchSpec orifice = orifice_of(c);
   const double flowing = 0.5 * c.valve.orifice_diameter * std::sqrt(c.valve.discharge_coefficient);
   if (std::abs(orifice.radius - flowing) > 1e-3 * flowing)
@@ -31,10 +31,11 @@ void require_jet_case(const Case& c) {
         "valve.discharge_coefficient = {:.3g} is a disc of radius {:.4g} mm",
         1e3 * orifice.radius, 1e3 * c.valve.orifice_diameter, c.valve.discharge_coefficient, 1e3 * flowing));
   require_jet_air(c);
+  return c;
 }
 
 JetModel::JetModel(const Case& c)
-    : case_((require_jet_case(c), c)),
+    : case_(require_jet_case(c)),
       grid_(make_grid(c)),
       drive_(case_),
       gas_{c.fluid.gamma, c.fluid.gas_constant},

@@ -19,8 +19,8 @@ struct JetSample : JetPoint {
   double pitot_gauge = 0.0;  ///< Pa above ambient: what a Pitot tube along the axis reads (behind its shock)
 };
 
-/// Throws InputError when the case is none of such a jet (see JetModel); computes nothing.
-void require_jet_case(const Case& c);
+/// The case; throws InputError when it is none of such a jet (see JetModel). Computes nothing.
+const Case& require_jet_case(const Case& c);
 
 /// The jet of a valve computed from its orifice, a patch of type "jet" on the lower z-face, and driven by the
 /// valve: compressible, or incompressible at the momentum-equivalent velocity.

@@ -4,8 +4,10 @@
 
 #include <algorithm>
 
+#include "app/flow_model.hpp"
 #include "app/grid_walls.hpp"
 #include "base/error.hpp"
+#include "case/copies.hpp"
 #include "dem/walls.hpp"
 
 namespace ejecta {
@@ -57,6 +59,12 @@ Scene make_scene(const Case& c, const Grid* grid) {
   particles.add(make_wall(plate, particles.materials(), ""));
   particles.require_apart();
   return s;
+}
+
+Scene scene_of(const Case& c) {
+  std::optional<Grid> grid;
+  if (c.flow.solver != FlowSolver::none) grid.emplace(make_grid(c));
+  return make_scene(with_first_copies(c), grid ? &*grid : nullptr);
 }
 
 }  // namespace ejecta

@@ -21,5 +21,7 @@ struct Scene {
 /// `c` with its copies written out; `grid` of a case with a flow, else null. Throws InputError for what
 /// cannot be built and for bodies that start in each other or in a wall.
 Scene make_scene(const Case& c, const Grid* grid);
+/// Of a case as it was read: its first copies, in its grid.
+Scene scene_of(const Case& c);
 
 }  // namespace ejecta

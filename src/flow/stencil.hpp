@@ -11,15 +11,17 @@ EJECTA_KERNEL Real limiter_van_leer(Real a, Real b) {
   return product > Real(0) ? Real(2) * product / (a + b) : Real(0);
 }
 
+/// Far below anything that matters, in any unit: keeps still air still.
+inline constexpr Real kLeastPositive = Real(1e-8);
+
 /// What an explicit step makes of a quantity that is positive: the sum, and where more than half of what was
 /// there would go, a value that falls like 1/change and never reaches zero. A bound at zero would be a trap:
 /// without dissipation nothing brings turbulence down, and without turbulence nothing brings dissipation
 /// back.
 EJECTA_KERNEL Real positive_sum(Real before, Real change) {
-  const Real least = Real(1e-8);  // far below anything that matters, in any unit: keeps still air still
   const Real half = Real(-0.5) * before;
   const Real sum = change < half ? half * half / -change : before + change;
-  return sum < least ? least : sum;  // NaN stays
+  return sum < kLeastPositive ? kLeastPositive : sum;  // NaN stays
 }
 
 /// The grid along one direction D around the lower face of a cell, as scalars.

@@ -6,9 +6,11 @@
 #include <cmath>
 
 #include "app/assumptions.hpp"
+#include "app/scene.hpp"
 #include "case/load.hpp"
 #include "case/template.hpp"
 #include "case/write.hpp"
+#include "ejection.hpp"
 
 using namespace ejecta;
 using testing::Contains;
@@ -17,10 +19,6 @@ using testing::IsEmpty;
 using testing::Not;
 
 namespace {
-
-Case ejection(const std::vector<std::string>& overrides = {}) {
-  return parse_case(case_template("ejection"), "ejection.toml", overrides);
-}
 
 TEST(Forecast, CountsCells) {
   const Forecast f = forecast(ejection());
@@ -104,7 +102,7 @@ TEST(Assumptions, AreDefaultsThatDecideAndThatTheUserHasNotSet) {
 }
 
 TEST(CheckReport, SaysWhatTheRunWillBe) {
-  const std::string text = check_report(ejection(), {}, 1e10);
+  const std::string text = check_report(ejection(), scene_of(ejection()), {}, 1e10);
   EXPECT_THAT(text, HasSubstr("288000"));
   EXPECT_THAT(text, HasSubstr("10.0 cells across"));
   EXPECT_THAT(text, HasSubstr("assumptions, since the case does not say"));

@@ -11,6 +11,7 @@
 #include "case/copies.hpp"
 #include "case/load.hpp"
 #include "case/template.hpp"
+#include "ejection.hpp"
 #include "scratch_directory.hpp"
 
 using namespace ejecta;
@@ -21,10 +22,6 @@ using testing::Not;
 
 /// What `check` tells of bodies that no air touches: when they meet the jet and the plate, and what misses.
 namespace {
-
-Case ejection(const std::vector<std::string>& overrides = {}) {
-  return parse_case(case_template("ejection"), "ejection.toml", overrides);
-}
 
 std::vector<std::string> warnings(const std::vector<std::string>& overrides) {
   std::vector<std::string> list;
@@ -105,13 +102,13 @@ TEST(Plate, OnlyThatOfTheMachineStaysWhereItIs) {
     const Vec3 edge = make_scene(c, nullptr).splitter->edge();
     EXPECT_NEAR(edge.x(), 0.251, 1e-12);
     EXPECT_NEAR(edge.z(), 0.036, 1e-12);
-    EXPECT_THAT(check_report(c, {}, 1e10),
+    EXPECT_THAT(check_report(c, scene_of(c), {}, 1e10),
                 HasSubstr("edge at x, z = 250, 34 mm from the nozzle, fixed to the machine"));
   }
 }
 
 TEST(CheckReport, ShowsBodyValveAndPlate) {
-  const std::string text = check_report(ejection(), {}, 1e10);
+  const std::string text = check_report(ejection(), scene_of(ejection()), {}, 1e10);
   EXPECT_THAT(text, HasSubstr("10 x 10 x 10 mm, 1 cm3, 2.7 g"));
   EXPECT_THAT(text, HasSubstr("past the plate's edge at 87.3 ms, 45 mm below it"));
   EXPECT_THAT(text, HasSubstr("is fully open from 6 ms to 8 ms, shut at 9 ms"));

@@ -8,24 +8,15 @@
 
 #include "base/error.hpp"
 #include "scene.hpp"
+#include "surface_scenes.hpp"
 
 namespace ejecta {
 namespace {
 
 /// A floor of 2 n n triangles over [-s, s]^2 with a ridge or hollow of slope `slope` along y.
 TriangleMesh floor_mesh(int n, double s, double slope) {
-  TriangleMesh mesh;
-  for (int j = 0; j <= n; ++j)
-    for (int i = 0; i <= n; ++i) {
-      const double x = s * (2.0 * i / n - 1), y = s * (2.0 * j / n - 1);
-      mesh.vertices.emplace_back(x, y, -slope * std::abs(x));
-    }
-  for (int j = 0; j < n; ++j)
-    for (int i = 0; i < n; ++i) {
-      const int a = j * (n + 1) + i;
-      mesh.triangles.push_back({a, a + 1, a + n + 2});
-      mesh.triangles.push_back({a, a + n + 2, a + n + 1});
-    }
+  TriangleMesh mesh = flat_mesh(n, s);
+  for (Vec3& v : mesh.vertices) v.z() = -slope * std::abs(v.x());
   return mesh;
 }
 

@@ -2,6 +2,7 @@
 
 #include <cstdio>
 #include <memory>
+#include <optional>
 
 #include "app/body_checks.hpp"
 #include "app/cli/commands.hpp"
@@ -31,8 +32,9 @@ void add_check(CLI::App& app, Action& action) {
       for (const std::string& path : o->cases) {
         try {
           std::vector<Problem> warnings;
-          const Case c = load_checked(path, o->overrides, &warnings);
-          fmt::print("{}\n", check_report(c, warnings, bandwidth));
+          std::optional<Scene> scene;
+          const Case c = load_checked(path, o->overrides, &warnings, &scene);
+          fmt::print("{}\n", check_report(c, *scene, warnings, bandwidth));
         } catch (const InputError& e) {
           print_input_error(e);
           code = exit_bad_input;

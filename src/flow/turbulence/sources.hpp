@@ -2,13 +2,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/parallel.hpp"
+#include "flow/stencil.hpp"
 #include "flow/turbulence/closures.hpp"
 
 namespace ejecta {
 
-/// Floors that keep still air still: far below any turbulence that matters.
-inline constexpr Real kMinimalK = Real(1e-8), kMinimalSecond = Real(1e-8);
+inline constexpr Real kMinimalK = kLeastPositive, kMinimalSecond = kLeastPositive;
 
 /// nu_t / nu is limited to this (a jet of a sorter has about 1500), so that the ambient's arbitrary epsilon
 /// cannot set the time step.
