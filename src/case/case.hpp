@@ -265,7 +265,7 @@ struct SplitterSpec {
   /// m, x and z of the edge from jet.nozzle: a plate that is bolted to the machine. Else:
   std::optional<std::array<double, 2>> edge;
   double distance = 0.25;   ///< m, +x from the jet's axis to the edge
-  double height = 0.035;    ///< m, edge above the path of the undisturbed body there
+  double height = 0.018;    ///< m, edge above the path of the undisturbed body there
   double thickness = 2e-3;  ///< m
   double length = 0.1;      ///< m, downstream extent
   bool solid = true;        ///< a wall that bodies hit, not only a line that decides

@@ -137,24 +137,24 @@ void IncrementSmoother::prepare(double nu_dt, const CutCells& cut, ConstFieldVie
   }
 }
 
-/// Along x the recurrence runs over the registers of kRealLanes rows at once, transposed there and back. Rows
-/// [first, last) are counted plane by plane.
+/// Along x the recurrence runs over the registers of kRegisterLanes rows at once, transposed there and back.
+/// Rows [first, last) are counted plane by plane.
 void IncrementSmoother::smooth_x(FieldView delta, int first, int last) const {
-  const int width = (nx_ + kRealLanes - 1) / kRealLanes * kRealLanes;
-  RealLanes* column =
-      reinterpret_cast<RealLanes*>(thread_scratch(static_cast<std::size_t>(width * kRealLanes)));
+  const int width = (nx_ + kRegisterLanes - 1) / kRegisterLanes * kRegisterLanes;
+  Register* column =
+      reinterpret_cast<Register*>(thread_scratch(static_cast<std::size_t>(width * kRegisterLanes)));
   const Factors& f = factors_[0];
   const auto row = [&](int n) { return delta.row(n % ny_, n / ny_); };
-  for (int n0 = first; n0 < last; n0 += kRealLanes) {
-    const int rows = std::min(kRealLanes, last - n0);
-    RealLanes tile[kRealLanes];
-    for (int i0 = 0; i0 < width; i0 += kRealLanes) {
-      for (int n = 0; n < kRealLanes; ++n)
-        tile[n] = *reinterpret_cast<const RealLanes*>(row(n0 + std::min(n, rows - 1)) + i0);
+  for (int n0 = first; n0 < last; n0 += kRegisterLanes) {
+    const int rows = std::min(kRegisterLanes, last - n0);
+    Register tile[kRegisterLanes];
+    for (int i0 = 0; i0 < width; i0 += kRegisterLanes) {
+      for (int n = 0; n < kRegisterLanes; ++n)
+        tile[n] = *reinterpret_cast<const Register*>(row(n0 + std::min(n, rows - 1)) + i0);
       transpose(tile);
-      std::copy_n(tile, kRealLanes, column + i0);
+      std::copy_n(tile, kRegisterLanes, column + i0);
     }
-    RealLanes s = column[0] * f.inverse[0];
+    Register s = column[0] * f.inverse[0];
     column[0] = s;
     for (int i = 1; i < nx_; ++i) {
       const std::size_t at = static_cast<std::size_t>(i);
@@ -165,10 +165,10 @@ void IncrementSmoother::smooth_x(FieldView delta, int first, int last) const {
       s = column[i] - f.above[static_cast<std::size_t>(i)] * s;
       column[i] = s;
     }
-    for (int i0 = 0; i0 < width; i0 += kRealLanes) {
-      std::copy_n(column + i0, kRealLanes, tile);
+    for (int i0 = 0; i0 < width; i0 += kRegisterLanes) {
+      std::copy_n(column + i0, kRegisterLanes, tile);
       transpose(tile);
-      for (int n = 0; n < rows; ++n) *reinterpret_cast<RealLanes*>(row(n0 + n) + i0) = tile[n];
+      for (int n = 0; n < rows; ++n) *reinterpret_cast<Register*>(row(n0 + n) + i0) = tile[n];
     }
   }
 }
@@ -217,7 +217,7 @@ void IncrementSmoother::smooth_z_and_add(FieldView delta, int j0, int j1, const 
 
 void IncrementSmoother::apply(FieldView delta, const Base& base) const {
   // Plane by plane, or as many of them at once as fill registers with rows
-  const int together = ny_ > 1 ? 1 : kRealLanes;
+  const int together = ny_ > 1 ? 1 : kRegisterLanes;
   for_each_index((nz_ + together - 1) / together, [&](int n) {
     const int k0 = n * together, k1 = std::min(k0 + together, nz_);
     if (active_[1]) with_cut_lines(delta, 1, k0, k1, nullptr, [&] { smooth_y(delta, k0); });
