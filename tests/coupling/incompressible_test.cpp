@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdlib>
 #include <memory>
 #include <random>
 
@@ -374,6 +375,42 @@ TEST(BodiesInLiquid, BodiesInContactKeepMomentumAsOneDoes) {
             fastest = std::max(fastest, std::abs(double(jet.flow.velocity_field(c)(i, j, k))));
     EXPECT_LT(fastest, 130.0) << "nothing is much faster than the jet";
     for (const Load& load : jet.loads) EXPECT_LT(load.force.norm(), kDensity * 1e4 * 49e-6 * 4);
+  }
+}
+
+/// Rocks and boxes that keep their places to each other while cells pass over them: in contact, in each
+/// other, with gaps of every width.
+std::vector<Body> random_heap(unsigned seed) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> part(-1.0, 1.0);
+  std::vector<Body> heap;
+  const int count = 2 + static_cast<int>(seed % 3);
+  for (int n = 0; n < count; ++n) {
+    const double size = (6.5 + 1.5 * part(random)) * 1e-3;
+    const Vec3 at(5.5e-3 * part(random), 5e-3 * part(random), 14e-3 + 4.5e-3 * part(random));
+    const Vec3 axis(part(random), part(random), part(random) + 1.5);
+    heap.push_back(turned(
+        body_of(n % 2 ? make_box({size, 0.8 * size, size}) : rock(seed + unsigned(n), size), at, {4, 1, 8}),
+        3.0 * part(random), axis));
+  }
+  return heap;
+}
+
+TEST(BodiesInLiquid, HeapsOfRocksDriveTheAirNoFasterThanTheJet) {
+  const char* asked = std::getenv("EJECTA_HEAPS");
+  const unsigned heaps = asked ? static_cast<unsigned>(std::atoi(asked)) : 12;
+  for (unsigned seed = 1; seed <= heaps; ++seed) {
+    Jet jet(random_heap(seed));
+    for (int n = 0; n < 60; ++n) {
+      jet.run(1);
+      double fastest = 0.0;
+      for (int c = 0; c < 3; ++c)
+        for (int k = 0; k < jet.grid.nz(); ++k)
+          for (int j = 0; j < jet.grid.ny(); ++j)
+            for (int i = 0; i < jet.grid.nx(); ++i)
+              fastest = std::max(fastest, std::abs(double(jet.flow.velocity_field(c)(i, j, k))));
+      ASSERT_LT(fastest, 200.0) << "heap " << seed << ", step " << n;
+    }
   }
 }
 

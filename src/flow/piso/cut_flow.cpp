@@ -381,7 +381,10 @@ void CutFlow::move_small(const CutCells& cut, const std::array<ConstFieldView, 3
     const Real velocity = solid[along] - out / across, lower = metrics[along].weight[between[along]];
     const Real own = to[along] > at[along] ? lower : Real(1) - lower;
     const Real asked = (velocity - (Real(1) - own) * u[along](carrier.i, carrier.j, carrier.k)) / own;
-    u[along](c.i, c.j, c.k) += near * (asked - u[along](c.i, c.j, c.k));
+    // No further than what the face passes: extrapolated beyond it, what one cell has too much drives the
+    // next, and three bodies that meet in the jet end in no number.
+    Real& here = u[along](c.i, c.j, c.k);
+    here += near * (std::clamp(asked, std::min(here, velocity), std::max(here, velocity)) - here);
   });
 }
 
