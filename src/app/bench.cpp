@@ -4,12 +4,12 @@
 
 #include "app/bench_dem.hpp"
 #include "app/bench_jet.hpp"
-#include "app/coupled_model.hpp"
 #include "app/exit_code.hpp"
 #include "app/simulation.hpp"
 #include "base/parallel.hpp"
 #include "base/stopwatch.hpp"
 #include "case/load.hpp"
+#include "simulation/coupled_model.hpp"
 
 namespace ejecta {
 namespace {

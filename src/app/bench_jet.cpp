@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <vector>
 
-#include "app/jet_model.hpp"
 #include "base/parallel.hpp"
 #include "base/stopwatch.hpp"
 #include "case/load.hpp"
+#include "jet/model.hpp"
 
 namespace ejecta {
 namespace {

@@ -1,10 +1,10 @@
-#include "app/computed_jet.hpp"
 #include "app/exit_code.hpp"
 #include "app/jet_run.hpp"
-#include "app/jet_store.hpp"
 #include "app/jet_sweep.hpp"
 #include "base/parallel.hpp"
 #include "case/extent.hpp"
+#include "jet/computed.hpp"
+#include "jet/store.hpp"
 
 namespace ejecta {
 

@@ -1,6 +1,6 @@
 #pragma once
-#include "app/jet_analysis.hpp"
-#include "app/jet_measured.hpp"
+#include "jet/analysis.hpp"
+#include "jet/measured.hpp"
 #include "output/figures.hpp"
 
 namespace ejecta {

@@ -2,7 +2,7 @@
 #include <span>
 #include <string>
 
-#include "app/jet_analysis.hpp"
+#include "jet/analysis.hpp"
 #include "output/run_directory.hpp"
 
 /// Profiles of a jet as files of history/.

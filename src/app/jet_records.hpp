@@ -3,10 +3,9 @@
 #include <string>
 #include <vector>
 
-#include "app/jet_analysis.hpp"
+#include "jet/analysis.hpp"
 #include "output/history.hpp"
 #include "output/run_directory.hpp"
-#include "sorter/jet_profile.hpp"
 
 namespace ejecta {
 
@@ -52,28 +51,5 @@ class OrificeRecord {
   // Means over the time in which the valve is fully open
   double open_time_ = 0.0, mass_flow_ = 0.0, thrust_ = 0.0, ideal_mass_flow_ = 0.0, ideal_thrust_ = 0.0;
 };
-
-/// Momentum through the planes across the jet, averaged over time: sound that runs to and fro in the box
-/// shakes the pressure of a whole plane.
-class MomentumRecord {
- public:
-  explicit MomentumRecord(const JetModel& jet);
-  /// What flows now counts for the last dt.
-  void observe(const JetModel& jet, double dt);
-  /// N, through the lower face of each cell and the upper end; zeros before the first observation.
-  std::vector<double> mean() const;
-  double thrust() const { return time_ > 0.0 ? thrust_ / time_ : 0.0; }  ///< N, of the orifice
-  const std::vector<double>& heights() const { return height_; }         ///< m above the orifice
-  /// Smallest and largest over that of the orifice's plane, and a dozen heights over the thrust.
-  nlohmann::ordered_json summary() const;
-
- private:
-  std::vector<double> height_, sum_;
-  double thrust_ = 0.0, time_ = 0.0;
-};
-
-/// Profile of the jet across the plane at which an ejection box begins. Its velocities are those of air of
-/// ambient density with the momentum of the jet: w sqrt(rho/rho_a).
-JetProfile::Moment profile_moment(const JetModel& jet, double height, const std::vector<double>& radii);
 
 }  // namespace ejecta

@@ -6,9 +6,10 @@
 #include "app/jet_figures.hpp"
 #include "app/jet_files.hpp"
 #include "app/jet_records.hpp"
-#include "app/jet_settled.hpp"
-#include "app/jet_store.hpp"
 #include "app/simulation.hpp"
+#include "jet/momentum.hpp"
+#include "jet/settled.hpp"
+#include "jet/store.hpp"
 #include "output/progress.hpp"
 
 namespace ejecta {

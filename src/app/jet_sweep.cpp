@@ -8,11 +8,11 @@
 
 #include "app/exit_code.hpp"
 #include "app/jet_figures.hpp"
-#include "app/jet_settled.hpp"
 #include "base/error.hpp"
 #include "base/parallel.hpp"
 #include "base/stopwatch.hpp"
 #include "case/write.hpp"
+#include "jet/settled.hpp"
 #include "output/report.hpp"
 #include "output/run_directory.hpp"
 

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <fstream>
 
-#include "app/body_checks.hpp"
 #include "app/exit_code.hpp"
 #include "base/error.hpp"
 #include "base/text.hpp"
@@ -14,6 +13,7 @@
 #include "case/load.hpp"
 #include "output/output_file.hpp"
 #include "output/report.hpp"
+#include "simulation/body_checks.hpp"
 
 namespace ejecta {
 namespace {

@@ -9,4 +9,7 @@ using Real = double;
 using Real = float;
 #endif
 
+/// "float" or "double".
+inline constexpr const char* kPrecision = sizeof(Real) == sizeof(double) ? "double" : "float";
+
 }  // namespace ejecta

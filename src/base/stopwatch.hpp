@@ -1,5 +1,7 @@
 #pragma once
 #include <chrono>
+#include <cstdint>
+#include <string>
 
 namespace ejecta {
 
@@ -18,6 +20,14 @@ class ScopedTimer {
  private:
   double& total_;
   double start_;
+};
+
+/// One row of the closing table: result.json key "operators".
+struct OperatorTime {
+  std::string name;
+  std::string equation;
+  double seconds = 0.0;
+  std::int64_t calls = 0;
 };
 
 }  // namespace ejecta

@@ -11,7 +11,8 @@
 #include "case/names.hpp"
 #include "case/schema.hpp"
 
-/// Where instruments are, relative to the grid; bodies have a shape, which app/body_checks.cpp looks at.
+/// Where instruments are, relative to the grid; bodies have a shape, which simulation/body_checks.cpp looks
+/// at.
 namespace ejecta {
 namespace {
 

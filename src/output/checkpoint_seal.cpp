@@ -9,8 +9,8 @@
 #include <memory>
 
 #include "base/error.hpp"
+#include "base/sha256.hpp"
 #include "output/output_file.hpp"
-#include "output/sha256.hpp"
 
 namespace ejecta::output {
 namespace {

@@ -7,9 +7,10 @@
 #include <fstream>
 #include <thread>
 
+#include "base/real.hpp"
+#include "base/sha256.hpp"
 #include "output/build_info.hpp"
 #include "output/run_directory.hpp"
-#include "output/sha256.hpp"
 
 namespace ejecta::output {
 namespace {
@@ -35,7 +36,7 @@ nlohmann::ordered_json make_manifest(const Provenance& p) {
           {"git_revision", git_revision()},
           {"compiler", compiler()},
           {"compile_flags", compile_flags()},
-          {"precision", precision()},
+          {"precision", kPrecision},
           {"command", p.command},
           {"case", p.case_path},
           {"set", p.overrides},
@@ -51,7 +52,7 @@ nlohmann::ordered_json make_manifest(const Provenance& p) {
 }
 
 std::vector<std::string> provenance_lines(const Provenance& p) {
-  std::vector<std::string> lines{fmt::format("ejecta {} ({}, {})", version(), git_revision(), precision()),
+  std::vector<std::string> lines{fmt::format("ejecta {} ({}, {})", version(), git_revision(), kPrecision),
                                  fmt::format("case {}", p.case_path)};
   for (const std::string& set : p.overrides) lines.push_back("set " + set);
   lines.push_back(fmt::format("input sha256 {}", sha256_hex(p.input)));

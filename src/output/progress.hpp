@@ -7,7 +7,7 @@
 #include <span>
 #include <string>
 
-#include "output/report_data.hpp"
+#include "base/stopwatch.hpp"
 
 namespace ejecta::output {
 

@@ -84,14 +84,6 @@ struct ReplayFrame {
   std::vector<SliceFrame> slices;
 };
 
-/// One row of the closing table: result.json key "operators".
-struct OperatorTime {
-  std::string name;
-  std::string equation;
-  double seconds = 0.0;
-  std::int64_t calls = 0;
-};
-
 /// Something the run takes for granted that the user should know: result.json key "assumptions".
 struct Assumption {
   std::string what;    ///< e.g. "Diameter of the orifice"

@@ -31,14 +31,6 @@ struct PackPlane {
 
 }  // namespace
 
-CellField scalar_field(std::string name, ConstFieldView values, double scale, double offset) {
-  return {std::move(name), {values, {}, {}}, 1, scale, offset};
-}
-
-CellField vector_field(std::string name, ConstFieldView x, ConstFieldView y, ConstFieldView z) {
-  return {std::move(name), {x, y, z}, 3};
-}
-
 void RectilinearWriter::write(const std::filesystem::path& path, double time,
                               std::span<const CellField> fields) {
   write(path, time, fields, grid_->range());

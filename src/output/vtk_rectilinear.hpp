@@ -4,21 +4,11 @@
 #include <span>
 #include <string>
 
+#include "grid/cell_field.hpp"
 #include "grid/grid.hpp"
 #include "output/vtk_appended.hpp"
 
 namespace ejecta::output {
-
-/// A scalar (one component) or vector (three) at cell centres, without copying it: what is written is
-/// scale * value + offset.
-struct CellField {
-  std::string name;
-  std::array<ConstFieldView, 3> component{};
-  int components = 1;
-  double scale = 1.0, offset = 0.0;
-};
-CellField scalar_field(std::string name, ConstFieldView values, double scale = 1.0, double offset = 0.0);
-CellField vector_field(std::string name, ConstFieldView x, ConstFieldView y, ConstFieldView z);
 
 /// Writes cell fields of a Grid as .vtr (VTK rectilinear grid, Float32). An axisymmetric grid is written in
 /// its own coordinates: x is the radius.

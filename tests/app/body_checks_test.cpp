@@ -1,11 +1,11 @@
-#include "app/body_checks.hpp"
+#include "simulation/body_checks.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "app/flow_model.hpp"
 #include "case/load.hpp"
 #include "case/template.hpp"
+#include "flow/model/flow_model.hpp"
 #include "refused_cases.hpp"
 
 using namespace ejecta;

@@ -1,4 +1,4 @@
-#include "app/case_changes.hpp"
+#include "simulation/case_changes.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

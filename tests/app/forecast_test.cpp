@@ -1,16 +1,16 @@
-#include "app/forecast.hpp"
+#include "simulation/forecast.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "app/assumptions.hpp"
-#include "app/scene.hpp"
 #include "case/load.hpp"
 #include "case/template.hpp"
 #include "case/write.hpp"
 #include "ejection.hpp"
+#include "simulation/assumptions.hpp"
+#include "simulation/scene.hpp"
 
 using namespace ejecta;
 using testing::Contains;

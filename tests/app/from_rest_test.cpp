@@ -5,10 +5,10 @@
 #include <fstream>
 #include <limits>
 
-#include "app/coupled_model.hpp"
 #include "base/clock.hpp"
 #include "base/error.hpp"
 #include "case/load.hpp"
+#include "simulation/coupled_model.hpp"
 
 /// Flows that nothing but pressure, a force, a boundary or a body sets in motion: no step may outrun what has
 /// not happened yet, and what is written out must not change it.

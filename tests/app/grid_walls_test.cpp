@@ -1,10 +1,10 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "app/coupled_model.hpp"
 #include "base/clock.hpp"
 #include "base/error.hpp"
 #include "case/load.hpp"
+#include "simulation/coupled_model.hpp"
 
 /// Bodies and the walls of the grid.
 namespace ejecta {

@@ -1,12 +1,12 @@
-#include "app/jet_inlet.hpp"
+#include "jet/inlet.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <fstream>
 
-#include "app/flow_model.hpp"
 #include "case/load.hpp"
+#include "flow/model/flow_model.hpp"
 #include "scratch_directory.hpp"
 #include "small_jet.hpp"
 
@@ -59,7 +59,7 @@ struct Blown {
   Grid grid;
   std::unique_ptr<FlowModel> flow;
   explicit Blown(const std::string& text)
-      : c(parse_case(text, "box")), grid(make_grid(c)), flow(make_flow_model(c, grid)) {
+      : c(parse_case(text, "box")), grid(make_grid(c)), flow(make_flow_model(c, grid, inflow_of(c))) {
     CutCells none;
     double t = 0.0;
     while (t < kBlown) {

@@ -3,9 +3,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "app/coupled_model.hpp"
 #include "base/clock.hpp"
 #include "case/load.hpp"
+#include "simulation/coupled_model.hpp"
 
 using namespace ejecta;
 

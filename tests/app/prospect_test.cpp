@@ -1,18 +1,18 @@
-#include "app/prospect.hpp"
+#include "simulation/prospect.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <fstream>
 
-#include "app/body_checks.hpp"
-#include "app/forecast.hpp"
-#include "app/scene.hpp"
 #include "case/copies.hpp"
 #include "case/load.hpp"
 #include "case/template.hpp"
 #include "ejection.hpp"
 #include "scratch_directory.hpp"
+#include "simulation/body_checks.hpp"
+#include "simulation/forecast.hpp"
+#include "simulation/scene.hpp"
 
 using namespace ejecta;
 using testing::Contains;

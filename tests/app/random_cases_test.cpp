@@ -6,13 +6,13 @@
 #include <random>
 #include <set>
 
-#include "app/body_checks.hpp"
-#include "app/coupled_model.hpp"
 #include "base/clock.hpp"
 #include "base/error.hpp"
 #include "base/text.hpp"
 #include "case/load.hpp"
 #include "case/schema.hpp"
+#include "simulation/body_checks.hpp"
+#include "simulation/coupled_model.hpp"
 
 /// What `check` passes, `run` computes: cases of which some keys are drawn at random from the schema are
 /// refused, or set up and stepped without a crash, a divergence or a NaN. Some hundred by default;

@@ -1,4 +1,4 @@
-#include "app/replay_header.hpp"
+#include "simulation/replay_header.hpp"
 
 #include <gtest/gtest.h>
 

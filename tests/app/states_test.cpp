@@ -1,8 +1,8 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "app/flow_model.hpp"
 #include "case/load.hpp"
+#include "flow/model/flow_model.hpp"
 
 /// States of regions and boundaries: the same words mean the same to every solver.
 namespace ejecta {

@@ -1,8 +1,8 @@
 #include <gtest/gtest.h>
 
-#include "app/flow_model.hpp"
 #include "case/load.hpp"
 #include "coupling/resolved/resolved.hpp"
+#include "flow/model/flow_model.hpp"
 #include "flow/piso/incompressible.hpp"
 
 /// A step that is tried leaves nothing behind, a body in the flow or not; neither does a resume.

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 
-#include "app/flow_model.hpp"
-#include "app/incompressible_states.hpp"
 #include "case/load.hpp"
 #include "flow/cut_cells.hpp"
-#include "flow/godunov/from_case.hpp"
+#include "flow/model/flow_model.hpp"
+#include "flow/model/gas_from_case.hpp"
+#include "flow/model/incompressible_states.hpp"
 
 using namespace ejecta;
 
@@ -104,14 +104,15 @@ epsilon = "= 2 * z + t"
                             "patch");
   const Grid grid = make_grid(c);
   const StillAir air(c);
-  const Boundary inlet = make_boundary(c, grid, air, nullptr, 0);
+  const Inflow none;
+  const Boundary inlet = make_boundary(c, grid, air, none, 0);
   EXPECT_TRUE(inlet.varies);
   EXPECT_NEAR(inlet.state({0, 2e-3, 11e-3}, 0.5).k, 11e-3, 1e-8);
   EXPECT_NEAR(inlet.state({0, 2e-3, 11e-3}, 0.5).second, 22e-3 + 0.5, 1e-6);
   EXPECT_NEAR(inlet.state({0, 2e-3, 1e-3}, 0.5).k, air.k, 1e-9) << "outside of the disc";
   Case open = c;
   open.boundary[1].state.k = "1 + y * t";
-  const Boundary outlet = make_boundary(open, grid, air, nullptr, 1);
+  const Boundary outlet = make_boundary(open, grid, air, none, 1);
   EXPECT_TRUE(outlet.varies);
   EXPECT_NEAR(outlet.state({20e-3, 2e-3, 0}, 5.0).k, 1.01, 1e-6);
 }
@@ -136,8 +137,7 @@ TEST(TurbulenceStates, AnInletOfGasHasItsProfile) {
   EXPECT_NEAR(inlet.at({0, 0, 1.0}, 0.0).k, 1e-4, 1e-12) << "less than nothing: still air";
   flow.advance(5e-3);
   const auto fields = flow.flow->fields();
-  const auto k =
-      std::find_if(fields.begin(), fields.end(), [](const output::CellField& f) { return f.name == "k"; });
+  const auto k = std::find_if(fields.begin(), fields.end(), [](const CellField& f) { return f.name == "k"; });
   ASSERT_NE(k, fields.end());
   for (const int layer : {1, 4, 8}) {
     const double z = 2e-3 * layer + 1e-3;

@@ -5,7 +5,7 @@
 
 #include <numeric>
 
-#include "output/sha256.hpp"
+#include "base/sha256.hpp"
 
 using namespace ejecta::output;
 

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "sorter/jet_inflow.hpp"
+#include "jet/inflow.hpp"
 #include "sorter/splitter.hpp"
 
 namespace ejecta {
@@ -76,7 +76,7 @@ TEST(SelfSimilarJet, CarriesTheThrustOfTheValve) {
   double momentum = 0.0, volume = 0.0;
   const double dr = 1e-5;
   for (double r = 0.5 * dr; r < 0.5; r += dr) {
-    const JetState s = j.at(Vec3(r, 0, z), u0);
+    const InflowState s = j.at(Vec3(r, 0, z), u0);
     momentum += s.velocity.z() * s.velocity.z() * 2 * 3.14159265358979 * r * dr;
     volume += s.velocity.z() * 2 * 3.14159265358979 * r * dr;
   }

@@ -1,4 +1,4 @@
-#include "app/cache.hpp"
+#include "jet/cache.hpp"
 
 #include <fmt/format.h>
 

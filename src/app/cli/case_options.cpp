@@ -4,7 +4,7 @@
 
 #include <cstdio>
 
-#include "app/body_checks.hpp"
+#include "simulation/body_checks.hpp"
 
 namespace ejecta {
 

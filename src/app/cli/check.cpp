@@ -4,11 +4,11 @@
 #include <memory>
 #include <optional>
 
-#include "app/body_checks.hpp"
 #include "app/cli/commands.hpp"
 #include "app/cli/input_error.hpp"
 #include "app/exit_code.hpp"
-#include "app/forecast.hpp"
+#include "simulation/body_checks.hpp"
+#include "simulation/forecast.hpp"
 
 namespace ejecta {
 

@@ -1,8 +1,0 @@
-#pragma once
-#include "app/flow_model.hpp"
-
-namespace ejecta {
-
-std::unique_ptr<FlowModel> make_incompressible_model(const Case& c, const Grid& grid);
-
-}  // namespace ejecta

@@ -1,0 +1,54 @@
+#include "jet/inflow.hpp"
+
+#include <cmath>
+#include <numbers>
+
+namespace ejecta {
+
+SelfSimilarJet::SelfSimilarJet(const JetSpec& jet, const ValveSpec& valve, double discharge_coefficient)
+    : nozzle_(jet.nozzle),
+      diameter_(valve.orifice_diameter * std::sqrt(discharge_coefficient)),
+      spread_((std::numbers::sqrt2 - 1.0) / (jet.spreading * jet.spreading)),
+      decay_(jet.velocity_decay),
+      origin_(jet.nozzle.z() + jet.virtual_origin * valve.orifice_diameter) {
+  if (decay_ == 0.0) decay_ = 0.5 * std::sqrt(3.0 * spread_);
+}
+
+InflowState SelfSimilarJet::at(const Vec3& x, double equivalent_velocity) const {
+  const double z = x.z() - origin_, dx = x.x() - nozzle_.x(), dy = x.y() - nozzle_.y();
+  const double r = std::hypot(dx, dy), eta = r / z, centre = decay_ * equivalent_velocity * diameter_ / z;
+  const double q = 1.0 + spread_ * eta * eta, shape = 1.0 / (q * q);
+  const double radial = centre * (eta * shape - 0.5 * eta / q);
+  InflowState s;
+  s.velocity = Vec3(r > 0.0 ? radial * dx / r : 0.0, r > 0.0 ? radial * dy / r : 0.0, centre * shape);
+  s.k = 0.07 * centre * centre * shape;
+  const double eddy_viscosity = centre * z / (8.0 * spread_);
+  s.epsilon = eddy_viscosity > 0.0 ? 0.09 * s.k * s.k / eddy_viscosity : 0.0;
+  return s;
+}
+
+NozzleInflow::NozzleInflow(const JetSpec& jet, const ValveSpec& valve)
+    : nozzle_(jet.nozzle), radius_(0.5 * valve.orifice_diameter), intensity_(jet.turbulence_intensity) {}
+
+InflowState NozzleInflow::at(double share, double velocity) const {
+  InflowState s;
+  s.velocity = Vec3(0, 0, share * velocity);
+  s.k = 1.5 * std::pow(intensity_ * velocity, 2);
+  const double length = 0.07 * 2.0 * radius_;  // mixing length of pipe flow
+  s.epsilon = std::pow(0.09, 0.75) * std::pow(s.k, 1.5) / length;
+  return s;
+}
+
+double NozzleInflow::share(const Vec3& centre, double half_x, double half_y) const {
+  constexpr int n = 16;
+  int inside = 0;
+  for (int a = 0; a < n; ++a)
+    for (int b = 0; b < n; ++b) {
+      const double x = centre.x() - nozzle_.x() + half_x * ((2 * a + 1.0) / n - 1.0);
+      const double y = centre.y() - nozzle_.y() + half_y * ((2 * b + 1.0) / n - 1.0);
+      inside += x * x + y * y < radius_ * radius_;
+    }
+  return double(inside) / (n * n);
+}
+
+}  // namespace ejecta

@@ -1,0 +1,69 @@
+#include "simulation/assumptions.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "case/schema.hpp"
+#include "jet/source.hpp"
+#include "simulation/prospect.hpp"
+
+namespace ejecta {
+namespace {
+
+/// The value of this key reaches the result of this case.
+bool acts(const Case& c, const std::string& section, std::size_t element, const std::string& key) {
+  const bool jet = c.flow.solver != FlowSolver::none && has_jet(c);
+  if (section == "valve") {
+    const bool law = key == "duration" || key == "rise_time" || key == "fall_time";
+    return jet && !(law && c.valve.shape == ValveShape::trace);
+  }
+  if (section == "jet") return jet && c.jet.kind == JetKind::self_similar;
+  if (section == "flow") return jet;  // laminar by default: of a jet hardly what is meant
+  if (section == "launch") return c.launch.enabled;
+  if (section == "splitter") return c.splitter.enabled && !c.splitter.edge;
+  if (section == "material") {
+    const std::string& name = c.materials[element].name;
+    return std::any_of(c.bodies.begin(), c.bodies.end(), [&](const BodySpec& b) {
+      return b.motion == Motion::free && b.material == name && !b.density && !b.mass;
+    });
+  }
+  return true;
+}
+
+/// As one reads it: without the quotes of TOML.
+std::string plain(std::string value) {
+  std::erase(value, '"');
+  return value;
+}
+
+std::string reason(const Case& c, const std::string& path, const Key& key) {
+  std::string text = key.source;
+  if (text.starts_with("assumption")) text.erase(0, std::string("assumption").size());
+  if (text.starts_with(": ")) text.erase(0, 2);
+  if (path == "valve.rise_time") {
+    const ValveProspect v = prospect_of_valve(c);
+    text += fmt::format("{}the valve opens to {:.0f} % within its pulse of {:.3g} ms",
+                        text.empty() ? "" : "; ", 100 * v.widest, 1e3 * c.valve.duration);
+  }
+  return text;
+}
+
+}  // namespace
+
+std::vector<output::Assumption> assumptions(const Case& original) {
+  Case c = original;  // the schema binds to a case it could change
+  std::vector<output::Assumption> list;
+  for (const Section& s : sections(c))
+    for (std::size_t n = 0; n < s.count(); ++n) {
+      const std::string table = s.repeated ? fmt::format("{}.{}", s.name, n) : s.name;
+      for (const Key& key : s.keys(n)) {
+        const std::string path = table + "." + key.name;
+        if (!key.decisive || c.given.contains(path) || !acts(original, s.name, n, key.name)) continue;
+        list.push_back({key.help, plain(value_text(key)), reason(original, path, key), path});
+      }
+    }
+  return list;
+}
+
+}  // namespace ejecta

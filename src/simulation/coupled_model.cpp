@@ -1,0 +1,301 @@
+#include "simulation/coupled_model.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.hpp"
+#include "base/state_reader.hpp"
+#include "base/stopwatch.hpp"
+#include "case/copies.hpp"
+#include "jet/inlet.hpp"
+#include "simulation/air_limits.hpp"
+#include "simulation/body_checks.hpp"
+
+namespace ejecta {
+namespace {
+
+/// A case without a fluid has no grid; one cell stands for it.
+Grid grid_of(const Case& c) {
+  if (c.flow.solver != FlowSolver::none) return make_grid(c);
+  const Axis one = make_axis({0.0, 1.0}, {1}, {});
+  return Grid(one, one, one);
+}
+
+/// Longest step without air, s: positions in histories and reports stay smooth.
+constexpr double kFlightStep = 1e-4;
+
+}  // namespace
+
+CoupledModel::CoupledModel(const Case& c, const Note& note)
+    : case_(with_copies(c)),
+      grid_(grid_of(c)),
+      inflow_(case_.flow.solver == FlowSolver::none ? Inflow{} : inflow_of(case_, note)),
+      flow_(make_flow_model(case_, grid_, inflow_)),
+      scene_(make_scene(case_, flow_ ? &grid_ : nullptr)),
+      particles_(scene_.particles),
+      splitter_(scene_.splitter) {
+  air_ = flow_ != nullptr;
+  draw_undisturbed(scene_.starts);
+  const std::size_t n = particles_.bodies().size();
+  loads_.resize(n);
+  impulse_.assign(n, Vec3::Zero());
+  force_sum_.assign(n, Vec3::Zero());
+  friction_sum_.assign(n, Vec3::Zero());
+  torque_sum_.assign(n, Vec3::Zero());
+  before_.resize(n);
+  peak_speed_.assign(n, 0.0);
+  if (flow_ && n > 0) coupling_.emplace(grid_, coupling_setup());
+  for (const Body& b : particles_.bodies())
+    paces_.push_back(b.course ? b.course->pace(case_.run.end_time) : Course::Pace{});
+  check_bodies();
+  build_step();
+}
+
+CouplingSetup CoupledModel::coupling_setup() const {
+  CouplingSetup s;
+  s.fluid_density = flow_->density();
+  s.gravity = case_.environment.gravity;
+  s.body_force = case_.flow.body_force;
+  if (case_.flow.solver == FlowSolver::incompressible && case_.flow.turbulence == TurbulenceModel::laminar)
+    s.viscosity = case_.fluid.viscosity;
+  for (std::size_t d = 0; d < 3; ++d)
+    s.periodic[d] = grid_.active(int(d)) && case_.boundary[2 * d].type == BoundaryType::periodic;
+  for (const Body& b : particles_.bodies())
+    s.roughness.push_back(particles_.materials().spec(b.material).roughness);
+  return s;
+}
+
+/// Where bodies would be that no air touches: as far as the end of the plate.
+void CoupledModel::draw_undisturbed(const std::vector<FlightState>& starts) {
+  for (std::size_t b = 0; b < starts.size(); ++b) {
+    const Body& body = particles_.bodies()[b];
+    start_velocity_.push_back(body.velocity);
+    std::vector<Vec3> path;
+    const double reach = splitter_ ? splitter_->edge().x() + case_.splitter.length : body.position.x();
+    const double flight =
+        body.velocity.x() > 0.0 && !body.course ? (reach - body.position.x()) / body.velocity.x() : 0.0;
+    for (int p = 0; flight > 0.0 && p <= 60; ++p)
+      path.push_back(free_flight(starts[b], case_.environment.gravity, flight * p / 60.0));
+    undisturbed_.push_back(path);
+  }
+}
+
+void CoupledModel::check_bodies() const {
+  if (!flow_) return;
+  std::vector<Problem> problems = ejecta::check_bodies(case_, grid_, particles_.bodies());
+  std::erase_if(problems, [](const Problem& p) { return p.severity != Severity::error; });
+  if (!problems.empty()) throw InputError(render(problems));
+}
+
+void CoupledModel::build_step() {
+  if (coupling_)
+    step_.push_back(
+        {"map.bodies", "what bodies leave of cells and faces, and their walls", [this](double, double) {
+           if (air_) coupling_->map(particles_.bodies(), cut_);
+         }});
+  if (flow_)
+    step_.push_back({"flow.advance", "one step of the fluid around the bodies (see flow.* below)",
+                     [this](double time, double dt) {
+                       if (!air_) return;
+                       flow_->advance(time, dt, cut_);
+                       ++flow_steps_;
+                     }});
+  if (coupling_)
+    step_.push_back({"loads.collect",
+                     "F = sum of pressure and friction on its walls - rho V g, T = sum r x F",
+                     [this](double time, double dt) {
+                       if (!air_) {
+                         std::fill(loads_.begin(), loads_.end(), Load{});
+                         return;
+                       }
+                       coupling_->collect(particles_.bodies(), cut_, dt, loads_);
+                       for (std::size_t b = 0; b < loads_.size(); ++b) impulse_[b] += dt * loads_[b].force;
+                       if (time < case_.stream.average_from) return;
+                       averaged_ += dt;
+                       for (std::size_t b = 0; b < loads_.size(); ++b) {
+                         force_sum_[b] += dt * loads_[b].force;
+                         friction_sum_[b] += dt * friction(b);
+                         torque_sum_[b] += dt * loads_[b].torque;
+                       }
+                     }});
+  if (!case_.bodies.empty())
+    step_.push_back({"bodies.advance",
+                     "m dV/dt = F_contact + m g + F_fluid (Eq. 4), I dw/dt + w x I w = T (Eq. 5)",
+                     [this](double, double dt) {
+                       for (std::size_t b = 0; b < before_.size(); ++b)
+                         before_[b] = particles_.bodies()[b].position;
+                       particles_.advance(dt, loads_);
+                       for (std::size_t b = 0; b < peak_speed_.size(); ++b)
+                         peak_speed_[b] = std::max(peak_speed_[b], particles_.bodies()[b].velocity.norm());
+                     }});
+  if (splitter_)
+    step_.push_back(
+        {"splitter.watch", "ejected when the centre passes above the edge",
+         [this](double time, double dt) { splitter_->watch(particles_.bodies(), before_, time + dt, dt); }});
+}
+
+double CoupledModel::stable_dt(double time) const {
+  double dt = case_.run.time_step_max;
+  if (case_.run.time_step) dt = *case_.run.time_step;
+  if (flow_ && air_) {
+    if (!case_.run.time_step) dt = std::min(dt, flow_->stable_dt(time));
+    if (coupling_ && !case_.run.time_step) dt = std::min(dt, step_of_bodies(time, dt));
+  } else if (!case_.run.time_step) {
+    dt = std::min(dt, kFlightStep);
+  }
+  if (flow_ && air_ && !case_.run.time_step) dt = std::min(dt, step_of_courses());
+  return dt;
+}
+
+/// A body must not cross half a cell in one step of at most dt, with the velocity it has, will have been
+/// given by then, or gains from gravity and the fluid.
+double CoupledModel::step_of_bodies(double time, double dt) const {
+  const double way = 0.5 * case_.run.courant;  // in cells
+  double rate = 0.0;                           // 1/s: rate dt + growth dt^2 = way
+  for (std::size_t n = 0; n < loads_.size(); ++n) {
+    const Body& b = particles_.bodies()[n];
+    const bool waits = time < std::max(b.release_at, b.enters_at.value_or(0.0));
+    const bool starts = waits && time + dt > std::max(b.release_at, b.enters_at.value_or(0.0));
+    const Vec3 velocity = starts ? case_.bodies[n].velocity : b.velocity;
+    const double spin = (starts ? case_.bodies[n].spin : b.angular_velocity).norm();
+    const bool falls = b.motion == Motion::free && (starts || !waits);
+    const Vec3 gain = falls ? Vec3(case_.environment.gravity + loads_[n].force / b.mass) : Vec3(0, 0, 0);
+    for (int d = 0; d < 3; ++d) {
+      if (!grid_.active(d)) continue;
+      const double h = grid_.axis(d).smallest();
+      const double r = (std::abs(velocity[d]) + spin * b.shape.bounding_radius()) / h;
+      rate = std::max(rate, 0.5 * (r + std::sqrt(r * r + 4.0 * way * std::abs(gain[d]) / h)));
+    }
+  }
+  return rate > 0.0 ? way / rate : dt;
+}
+
+void CoupledModel::advance(double time, double dt) {
+  if (flow_ && air_) {
+    courant_ = flow_->courant(dt);
+    if (!std::isfinite(courant_)) require_finite(time);
+    max_courant_ = std::max(max_courant_, courant_);
+  }
+  for (Operator& op : step_) {
+    ScopedTimer timer(op.seconds);
+    op.run(time, dt);
+    ++op.calls;
+  }
+  watch_air(time + dt);
+}
+
+void CoupledModel::watch_air(double time) {
+  if (!air_ || case_.run.until != RunUntil::verdict || !coupling_) return;
+  if (flow_steps_ % 50 == 0) {
+    const double energy = flow_->kinetic_energy();
+    peak_energy_ = std::max(peak_energy_, energy);
+    if (time > inflow_.shut_from && energy < kDeadAir * peak_energy_) air_ = false;
+  }
+  if (time > inflow_.shut_from && !coupling_->any_inside(particles_.bodies())) air_ = false;
+}
+
+/// What is prescribed may be at rest now and fast within the step: its highest speed in the whole run must
+/// not take it over half a cell, and of a swing there are at least 40 steps.
+double CoupledModel::step_of_courses() const {
+  constexpr double change_in_step = 0.1;  // of the highest velocity
+  double rate = 0.0;
+  for (std::size_t n = 0; n < paces_.size(); ++n) {
+    const double around = paces_[n].spin * particles_.bodies()[n].shape.bounding_radius();
+    for (int d = 0; d < 3; ++d)
+      if (grid_.active(d))
+        rate = std::max(rate,
+                        (paces_[n].speed[d] + around) / grid_.axis(d).smallest() / (0.5 * case_.run.courant));
+    rate = std::max(rate, paces_[n].change / change_in_step);
+  }
+  return rate > 0.0 ? 1.0 / rate : 1e300;
+}
+
+bool CoupledModel::finished() const {
+  if (case_.run.until == RunUntil::verdict) return splitter_ && splitter_->all_passed();
+  if (case_.run.until != RunUntil::rest) return false;
+  const auto bodies = particles_.bodies();
+  for (std::size_t n = 0; n < bodies.size(); ++n)
+    if (particles_.presence(static_cast<int>(n)) == Presence::waiting) return false;
+  return std::all_of(bodies.begin(), bodies.end(), [&](const Body& b) {
+    return particles_.presence(static_cast<int>(&b - bodies.data())) == Presence::gone ||
+           b.velocity.norm() + b.angular_velocity.norm() * b.shape.bounding_radius() < 1e-4;
+  });
+}
+
+Vec3 CoupledModel::mean_force(std::size_t b) const {
+  return averaged_ > 0.0 ? Vec3(force_sum_[b] / averaged_) : loads_[b].force;
+}
+
+Vec3 CoupledModel::friction(std::size_t b) const {
+  return air_ && coupling_ && b < coupling_->parts().size() ? coupling_->parts()[b].friction
+                                                            : Vec3(Vec3::Zero());
+}
+
+Vec3 CoupledModel::mean_friction(std::size_t b) const {
+  return averaged_ > 0.0 ? Vec3(friction_sum_[b] / averaged_) : friction(b);
+}
+
+Vec3 CoupledModel::mean_torque(std::size_t b) const {
+  return averaged_ > 0.0 ? Vec3(torque_sum_[b] / averaged_) : loads_[b].torque;
+}
+
+std::vector<double> CoupledModel::events() const { return flow_ ? flow_->events() : std::vector<double>{}; }
+
+void CoupledModel::require_finite(double time) const {
+  Vec3 where{0, 0, 0};
+  if (!flow_ || !air_ || flow_->finite(&where)) return;
+  throw DivergedError(
+      fmt::format("the flow diverged at t = {:.6g} s near x, y, z = {:.4g}, {:.4g}, {:.4g} mm (Courant "
+                  "number {:.2f}); try a smaller "
+                  "run.courant, a smoother grid there, or a longer valve.rise_time",
+                  time, where.x() * 1e3, where.y() * 1e3, where.z() * 1e3, courant_));
+}
+
+std::vector<OperatorTime> CoupledModel::operator_times() const {
+  std::vector<OperatorTime> all;
+  for (const Operator& op : step_) {
+    if (op.name != "flow.advance") {
+      all.push_back({op.name, op.equation, op.seconds, op.calls});
+      continue;
+    }
+    for (OperatorTime part : flow_->operators()) {
+      part.calls = flow_steps_;
+      all.push_back(part);
+    }
+  }
+  return all;
+}
+
+std::vector<std::vector<double>> CoupledModel::state_numbers() const {
+  std::vector<double> own{averaged_, max_courant_, peak_energy_, double(flow_steps_), double(air_)};
+  for (const auto* list : {&impulse_, &start_velocity_, &force_sum_, &friction_sum_, &torque_sum_})
+    for (const Vec3& v : *list) own.insert(own.end(), {v.x(), v.y(), v.z()});
+  own.insert(own.end(), peak_speed_.begin(), peak_speed_.end());
+  for (const Load& l : loads_)
+    own.insert(own.end(), {l.force.x(), l.force.y(), l.force.z(), l.torque.x(), l.torque.y(), l.torque.z()});
+  return {own, particles_.state(), flow_ ? flow_->state_numbers() : std::vector<double>{},
+          coupling_ ? coupling_->state() : std::vector<double>{},
+          splitter_ ? splitter_->state() : std::vector<double>{}};
+}
+
+void CoupledModel::restore_numbers(const std::vector<std::vector<double>>& numbers, double time) {
+  if (numbers.size() != 5)
+    throw Error(fmt::format("the saved state has {} parts instead of 5", numbers.size()));
+  StateReader own(numbers[0], "model");
+  for (double* v : {&averaged_, &max_courant_, &peak_energy_}) *v = own.number();
+  flow_steps_ = static_cast<std::int64_t>(own.number());
+  air_ = own.whole(0, 1) == 1;
+  for (auto* list : {&impulse_, &start_velocity_, &force_sum_, &friction_sum_, &torque_sum_})
+    for (Vec3& v : *list) v = own.vec3();
+  for (double& v : peak_speed_) v = own.number();
+  for (Load& l : loads_) l.force = own.vec3(), l.torque = own.vec3();
+  own.end();
+  particles_.restore(numbers[1]);
+  if (flow_) flow_->restore_numbers(numbers[2], time);
+  if (coupling_) coupling_->restore(numbers[3]);
+  if (splitter_) splitter_->restore(numbers[4]);
+}
+
+}  // namespace ejecta

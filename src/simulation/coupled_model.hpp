@@ -1,0 +1,98 @@
+#pragma once
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/text.hpp"
+#include "case/case.hpp"
+#include "coupling/resolved/resolved.hpp"
+#include "flow/model/flow_model.hpp"
+#include "simulation/scene.hpp"
+
+namespace ejecta {
+
+/// One entry of a step: what it does, its equation, what it cost.
+struct Operator {
+  std::string name, equation;
+  std::function<void(double time, double dt)> run;
+  double seconds = 0.0;
+  std::int64_t calls = 0;
+};
+
+/// A whole case: fluid, bodies, their coupling, the splitter. `step` is the time step; ejecta plan prints it.
+class CoupledModel {
+ public:
+  /// `note` is told when a jet has to be computed first.
+  explicit CoupledModel(const Case& c, const Note& note = {});
+  CoupledModel(const CoupledModel&) = delete;  // its operators hold it
+
+  double stable_dt(double time) const;
+  void advance(double time, double dt);
+  std::vector<Operator>& step() { return step_; }
+  std::vector<OperatorTime> operator_times() const;
+
+  const Case& config() const { return case_; }
+  const Grid& grid() const { return grid_; }
+  const Scene& scene() const { return scene_; }
+  const Inflow& inflow() const { return inflow_; }
+  FlowModel* flow() const { return flow_.get(); }
+  const Particles& particles() const { return particles_; }
+  const std::vector<Load>& loads() const { return loads_; }
+  const std::optional<Splitter>& splitter() const { return splitter_; }
+  const std::vector<Vec3>& impulse() const { return impulse_; }  ///< N s of the fluid on each body
+  const std::vector<Vec3>& start_velocity() const { return start_velocity_; }
+  const std::vector<std::vector<Vec3>>& undisturbed() const { return undisturbed_; }
+  /// Mean force over the time since stream.average_from, N.
+  Vec3 mean_force(std::size_t body) const;
+  Vec3 mean_torque(std::size_t body) const;
+  /// What friction has in the force of the air: now, and in the mean force, N.
+  Vec3 friction(std::size_t body) const;
+  Vec3 mean_friction(std::size_t body) const;
+  double peak_speed(std::size_t body) const { return peak_speed_[body]; }  ///< m/s
+  std::int64_t flow_steps() const { return flow_steps_; }
+  double max_courant() const { return max_courant_; }
+  double courant() const { return courant_; }
+  /// The air is still being computed.
+  bool air() const { return air_; }
+  /// The case's own end ("verdict", "rest") has come.
+  bool finished() const;
+  std::vector<double> events() const;
+  /// Throws DivergedError with the place when the flow is no longer finite.
+  void require_finite(double time) const;
+
+  std::vector<Field*> state_fields() { return flow_ ? flow_->state_fields() : std::vector<Field*>{}; }
+  std::vector<std::vector<double>> state_numbers() const;
+  void restore_numbers(const std::vector<std::vector<double>>& numbers, double time);
+
+ private:
+  CouplingSetup coupling_setup() const;
+  void draw_undisturbed(const std::vector<FlightState>& starts);
+  void check_bodies() const;
+  void build_step();
+  void watch_air(double time);
+  double step_of_courses() const;
+  double step_of_bodies(double time, double dt) const;
+
+  const Case case_;  // copies of bodies written out
+  Grid grid_;
+  const Inflow inflow_;
+  std::unique_ptr<FlowModel> flow_;
+  Scene scene_;
+  Particles& particles_;
+  std::optional<ResolvedCoupling> coupling_;
+  CutCells cut_;
+  std::optional<Splitter>& splitter_;
+  std::vector<Operator> step_;
+  std::vector<Load> loads_;
+  std::vector<Vec3> impulse_, start_velocity_, before_, force_sum_, friction_sum_, torque_sum_;
+  std::vector<std::vector<Vec3>> undisturbed_;
+  std::vector<Course::Pace> paces_;  // of prescribed bodies, over the whole run
+  std::vector<double> peak_speed_;
+  double averaged_ = 0.0, max_courant_ = 0.0, courant_ = 0.0, peak_energy_ = 0.0;
+  std::int64_t flow_steps_ = 0;
+  bool air_ = true, resting_ = false;
+};
+
+}  // namespace ejecta

@@ -1,0 +1,38 @@
+#pragma once
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "case/case.hpp"
+#include "case/problem.hpp"
+#include "simulation/prospect.hpp"
+
+namespace ejecta {
+
+/// What a run will be, told from the case alone.
+struct Forecast {
+  std::int64_t cells = 0;
+  double smallest_cell = 0.0, largest_cell = 0.0;      ///< m, edges
+  double smallest_volume = 0.0, largest_volume = 0.0;  ///< m3
+  double fastest = 0.0;                                ///< m/s, the speed that limits the step
+  double air_until = 0.0;                              ///< s: bodies fly on without flow
+  double time_step = 0.0;                              ///< s, the shortest
+  std::int64_t steps = 0;
+  double memory = 0.0;  ///< bytes
+  double disk = 0.0;    ///< bytes
+};
+Forecast forecast(const Case& c);
+/// The same where the bodies are there already: building those of large surfaces takes seconds.
+Forecast forecast(const Case& c, const Company& company);
+
+/// Seconds that the steps take at the rate (bytes/s) at which this machine moves data.
+double expected_seconds(const Case& c, const Forecast& f, double bandwidth);
+/// Measured in about a tenth of a second, bytes/s.
+double measured_bandwidth();
+
+/// All of it as the text of `ejecta check`, with the warnings of the case; `scene`: of the case, see
+/// scene_of.
+std::string check_report(const Case& c, const Scene& scene, const std::vector<Problem>& warnings,
+                         double bandwidth);
+
+}  // namespace ejecta

@@ -1,0 +1,11 @@
+#pragma once
+#include "output/report_data.hpp"
+#include "simulation/coupled_model.hpp"
+
+namespace ejecta {
+
+/// What a replay of the case shows besides its frames: box, slices, bodies, plate, nozzle, the undisturbed
+/// path.
+output::ReplayHeader replay_header(const Case& c, const CoupledModel& model);
+
+}  // namespace ejecta

@@ -1,0 +1,287 @@
+#include "simulation/run_outputs.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/clock.hpp"
+#include "base/state_reader.hpp"
+#include "simulation/replay_header.hpp"
+#include "simulation/spacing.hpp"
+
+namespace ejecta {
+namespace {
+
+using output::Column;
+
+std::vector<Column> body_columns() {
+  std::vector<Column> c;
+  const auto add = [&](const char* name, const char* unit) {
+    for (const char* axis : {"_x", "_y", "_z"}) c.push_back({std::string(name) + axis, unit});
+  };
+  for (const char* axis : {"x", "y", "z"}) c.push_back({axis, "m"});
+  add("velocity", "m/s");
+  add("spin", "rad/s");
+  add("force", "N");
+  add("friction", "N");  // its part in the force
+  add("torque", "N m");
+  add("contact_force", "N");
+  return c;
+}
+
+std::vector<Vec3> points_of(const LineSpec& line) {
+  std::vector<Vec3> points;
+  for (int n = 0; n < line.points; ++n)
+    points.push_back(line.from + double(n) / (line.points - 1) * (line.to - line.from));
+  return points;
+}
+
+/// An output at an interval is due at the first step at or after each multiple of it (0: every step). Then
+/// `last`, the time it was written last, becomes `time`.
+bool due(double interval, double time, double& last) {
+  const double next = interval > 0.0 ? (std::floor(last / interval * (1.0 + 1e-9)) + 1.0) * interval : last;
+  if (time < next * (1.0 - 1e-9)) return false;
+  last = time;
+  return true;
+}
+
+/// A new history, or the one of the run that is resumed.
+std::unique_ptr<output::HistoryFile> open_history(const output::RunDirectory& directory,
+                                                  const std::string& name,
+                                                  const std::vector<std::string>& provenance,
+                                                  std::vector<Column> columns, std::optional<double> resume) {
+  const auto path = directory.history(name);
+  if (resume && std::filesystem::exists(path))
+    return std::make_unique<output::HistoryFile>(path, std::move(columns), *resume);
+  return std::make_unique<output::HistoryFile>(path, provenance, std::move(columns));
+}
+
+output::PvdSeries open_series(const output::RunDirectory& directory, const std::string& name,
+                              std::optional<double> resume) {
+  return resume ? output::PvdSeries(directory.fields(), name, *resume)
+                : output::PvdSeries(directory.fields(), name);
+}
+
+/// More bodies have no history each: a process may not hold so many files open.
+constexpr std::size_t kHistories = 200;
+
+}  // namespace
+
+RunOutputs::RunOutputs(const Case& c, const CoupledModel& model, const output::RunDirectory& directory,
+                       const std::vector<std::string>& provenance, std::optional<double> resume)
+    : case_(c), model_(model), directory_(directory), provenance_(provenance) {
+  if (model.particles().bodies().size() <= kHistories)
+    for (const Body& b : model.particles().bodies())
+      bodies_.push_back(open_history(directory, "body-" + b.name, provenance, body_columns(), resume));
+  if (model.flow()) {
+    const auto quantities = model.flow()->quantities();
+    for (const ProbeSpec& spec : c.probes)
+      probes_.emplace_back(
+          spec, quantities,
+          open_history(directory, "probe-" + spec.name, provenance, Probe::columns(quantities), resume));
+    std::vector<Column> columns{{"position", "m"}};
+    for (const auto& [name, unit] : quantities) columns.push_back({name, unit});
+    if (c.output.slices_interval > 0.0)
+      for (const LineSpec& spec : c.lines) {
+        Line line{
+            points_of(spec), {}, open_history(directory, "line-" + spec.name, provenance, columns, resume)};
+        for (const Vec3& x : line.points) line.position.push_back((x - spec.from).norm());
+        lines_.push_back(std::move(line));
+      }
+  } else {
+    energy_ = open_history(
+        directory, "ledger", provenance,
+        {{"kinetic", "J"}, {"potential", "J"}, {"elastic", "J"}, {"dissipated", "J"}, {"work", "J"}}, resume);
+  }
+  if (c.output.fields_interval > 0.0) {
+    if (model.flow()) {
+      air_ = open_series(directory, "air", resume);
+      writer_.emplace(model.grid());
+    }
+    if (!model.particles().bodies().empty()) bodies_series_ = open_series(directory, "bodies", resume);
+  }
+  if (model.flow() && c.output.slices_interval > 0.0)
+    for (const SliceSpec& s : c.slices) {
+      slices_.push_back(open_series(directory, "slice-" + s.name, resume));
+      if (!writer_) writer_.emplace(model.grid());
+    }
+  header_ = replay_header(c, model);
+  if (bodies_series_) bodies_writer_.emplace(header_.bodies);
+  if (c.output.report) {
+    replay_interval_ = c.output.slices_interval > 0.0 ? c.output.slices_interval : c.run.end_time / 200.0;
+    replay_ = resume && std::filesystem::exists(directory.replay())
+                  ? std::make_unique<output::ReplayFile>(directory.replay(), *resume)
+                  : std::make_unique<output::ReplayFile>(directory.replay(), header_);
+    for (const auto& raster : header_.rasters) samplers_.emplace_back(model.grid(), raster);
+  }
+}
+
+void RunOutputs::add_events(Clock& clock, double end) const {
+  clock.add_events_every(case_.output.fields_interval, 0.0, end);
+  clock.add_events_every(case_.output.slices_interval, 0.0, end);
+}
+
+void RunOutputs::observe(double time, std::int64_t) {
+  update_probes(time);
+  if (due(case_.output.history_interval, time, last_history_)) write_histories(time);
+  if (case_.output.fields_interval > 0.0 && due(case_.output.fields_interval, time, last_fields_))
+    write_fields(time);
+  if (case_.output.slices_interval > 0.0 && model_.air() &&
+      due(case_.output.slices_interval, time, last_slices_)) {
+    write_slices(time);
+    write_lines(time);
+  }
+  if (replay_ && due(replay_interval_, time, last_replay_)) write_replay(time);
+}
+
+void RunOutputs::update_probes(double time) {
+  const double dt = time - last_probe_time_;
+  last_probe_time_ = time;
+  for (Probe& p : probes_) p.read(*model_.flow(), time, dt);
+}
+
+void RunOutputs::write_histories(double time) {
+  const auto bodies = model_.particles().bodies();
+  for (std::size_t b = 0; b < bodies_.size(); ++b) {
+    std::array<double, 21> row;
+    const Vec3 columns[] = {bodies[b].position,
+                            bodies[b].velocity,
+                            bodies[b].angular_velocity,
+                            model_.loads()[b].force,
+                            model_.friction(b),
+                            model_.loads()[b].torque,
+                            model_.particles().contact_force(int(b))};
+    for (std::size_t n = 0; n < 21; ++n) row[n] = columns[n / 3][static_cast<int>(n % 3)];
+    bodies_[b]->add(time, row);
+  }
+  for (Probe& p : probes_) p.write(time);
+  if (energy_) {
+    const DemEnergy e = model_.particles().energy();
+    energy_->add(time, std::array{e.kinetic, e.potential, e.elastic, e.dissipated, e.work});
+  }
+}
+
+std::vector<CellField> RunOutputs::written_fields() const {
+  std::vector<CellField> fields = model_.flow()->fields();
+  const std::vector<std::string>& chosen = case_.output.fields;
+  if (!chosen.empty())
+    std::erase_if(fields, [&](const CellField& f) {
+      return std::find(chosen.begin(), chosen.end(), f.name) == chosen.end();
+    });
+  return fields;
+}
+
+void RunOutputs::write_fields(double time) {
+  if (air_ && model_.air()) {
+    const auto path = air_->next(".vtr");
+    writer_->write(path, time, written_fields());
+    air_->add(time, path);
+  }
+  if (bodies_series_) {
+    std::vector<output::BodyPose> poses;
+    output::BodyArray speed{"speed", 1, {}}, velocity{"velocity", 3, {}}, force{"force", 3, {}},
+        contact{"contact_force", 3, {}};
+    const auto bodies = model_.particles().bodies();
+    for (std::size_t b = 0; b < bodies.size(); ++b) {
+      poses.push_back(
+          {bodies[b].position, bodies[b].orientation, model_.particles().presence(int(b)) == Presence::here});
+      speed.values.push_back(bodies[b].velocity.norm());
+      for (int d = 0; d < 3; ++d) {
+        velocity.values.push_back(bodies[b].velocity[d]);
+        force.values.push_back(model_.loads()[b].force[d]);
+        contact.values.push_back(model_.particles().contact_force(int(b))[d]);
+      }
+    }
+    const auto path = bodies_series_->next(".vtp");
+    bodies_writer_->write(path, time, poses, std::array{speed, velocity, force, contact});
+    bodies_series_->add(time, path);
+  }
+}
+
+void RunOutputs::write_replay(double time) {
+  output::ReplayFrame frame;
+  frame.time = time;
+  for (const Body& b : model_.particles().bodies())
+    frame.bodies.push_back(
+        {b.position, b.orientation, model_.particles().presence(int(frame.bodies.size())) == Presence::here});
+  if (model_.air())
+    for (std::size_t r = 0; r < samplers_.size(); ++r) {
+      output::SliceFrame slice;
+      slice.raster = static_cast<int>(r);
+      const auto u = model_.flow()->velocity();
+      samplers_[r].sample(u[0], u[1], u[2], slice);
+      frame.slices.push_back(std::move(slice));
+    }
+  replay_->add(frame);
+}
+
+void RunOutputs::write_slices(double time) {
+  for (std::size_t s = 0; s < slices_.size(); ++s) {
+    const SliceSpec& spec = case_.slices[s];
+    const auto path = slices_[s].next(".vtr");
+    writer_->write(path, time, written_fields(),
+                   output::slice_range(model_.grid(), spec.axis, spec.position));
+    slices_[s].add(time, path);
+  }
+}
+
+void RunOutputs::write_lines(double time) {
+  for (Line& line : lines_) {
+    std::vector<double> row(line.file->columns().size());
+    for (std::size_t n = 0; n < line.points.size(); ++n) {
+      row[0] = line.position[n];
+      model_.flow()->sample(line.points[n], std::span(row).subspan(1));
+      line.file->add(time, row);
+    }
+  }
+}
+
+void RunOutputs::finish(double time) {
+  if (time > last_history_) write_histories(time);
+  const Particles& particles = model_.particles();
+  if (!belt_runs(particles)) return;
+  output::HistoryFile file(directory_.history("spacing"), provenance_,
+                           {{"body", "1"},
+                            {"neighbour", "1"},
+                            {"x", "m"},
+                            {"y", "m"},
+                            {"z", "m"},
+                            {"gap", "m"},
+                            {"centre_distance", "m"}});
+  for (const Spacing& s : spacings(particles)) {
+    const Vec3& x = particles.bodies()[static_cast<std::size_t>(s.body)].position;
+    file.add(time, std::array{double(s.body), double(s.neighbour), x.x(), x.y(), x.z(), s.gap, s.centre});
+  }
+}
+
+void RunOutputs::report(nlohmann::ordered_json& result) const {
+  if (!model_.flow()) return;
+  const auto quantities = model_.flow()->quantities();
+  for (const Probe& p : probes_) p.report(result, quantities);
+  std::vector<double> values(quantities.size());
+  for (const LineSpec& line : case_.lines) {
+    auto& out = result["lines"][line.name];
+    for (const Vec3& x : points_of(line)) {
+      model_.flow()->sample(x, values);
+      out["position_m"].push_back((x - line.from).norm());
+      for (std::size_t q = 0; q < values.size(); ++q) out[quantities[q].first].push_back(values[q]);
+    }
+  }
+}
+
+std::vector<double> RunOutputs::state() const {
+  std::vector<double> s{last_history_, last_fields_, last_slices_, last_replay_, last_probe_time_};
+  for (const Probe& p : probes_) p.save(s);
+  return s;
+}
+
+void RunOutputs::restore(const std::vector<double>& s) {
+  StateReader in(s, "outputs");
+  for (double* v : {&last_history_, &last_fields_, &last_slices_, &last_replay_, &last_probe_time_})
+    *v = in.number();
+  for (Probe& p : probes_) p.load(in);
+  in.end();
+}
+
+}  // namespace ejecta

@@ -1,0 +1,97 @@
+#include "simulation/run.hpp"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <thread>
+
+#include "app/ejection.hpp"
+#include "base/error.hpp"
+#include "scratch_directory.hpp"
+
+/// run(case) -> result, as studies, sorters and scripts call it.
+namespace ejecta {
+namespace {
+
+/// A coarse ejection whose air is computed for a millisecond.
+Case short_ejection(double pressure_kPa = 700) {
+  return ejection({"run.until=time", "run.end_time=1 ms", "grid.x.cells=[8, 16, 8]",
+                   "grid.y.cells=[8, 16, 8]", "grid.z.cells=[40]", "jet.kind=self-similar",
+                   "valve.opens_at=0 ms", fmt::format("valve.supply_pressure={} kPa gauge", pressure_kPa),
+                   "output.report=false"});
+}
+
+/// All that does not depend on when and where it ran.
+nlohmann::ordered_json figures_of(Result r) {
+  for (const char* key : {"wall_time_s", "cell_steps_per_s", "threads", "operators"}) r.quantities.erase(key);
+  return r.quantities;
+}
+
+TEST(Run, SideBySideGivesTheBitsOfEachAlone) {
+  const std::vector<double> pressures{500, 600, 700};
+  std::vector<nlohmann::ordered_json> alone, together(pressures.size());
+  for (const double p : pressures) alone.push_back(figures_of(run(short_ejection(p))));
+  EXPECT_NE(alone[0], alone[1]);
+  std::vector<std::thread> threads;
+  for (std::size_t n = 0; n < pressures.size(); ++n)
+    threads.emplace_back(
+        [&, n] { together[n] = figures_of(run(short_ejection(pressures[n]), {.threads = int(n) + 1})); });
+  for (std::thread& t : threads) t.join();
+  for (std::size_t n = 0; n < pressures.size(); ++n) EXPECT_EQ(alone[n], together[n]) << pressures[n];
+}
+
+TEST(Run, IsWatchedAndStopped) {
+  std::int64_t seen = -1;
+  double last = -1.0;
+  const Result r = run(short_ejection(), {.observe =
+                                              [&](const Moment& m) {
+                                                EXPECT_EQ(m.step, seen + 1);
+                                                EXPECT_GT(m.time, last);
+                                                seen = m.step;
+                                                last = m.time;
+                                              },
+                                          .stop = [&] { return seen == 3; }});
+  EXPECT_EQ(r.end, RunEnd::stopped);
+  EXPECT_EQ(r.steps, 3);
+  EXPECT_EQ(r.time, last);
+  EXPECT_TRUE(r.quantities.empty());
+}
+
+TEST(Run, StoppedAndResumedIsTheUndisturbedOne) {
+  const ScratchDirectory scratch;
+  const std::filesystem::path place = scratch.path() / "stopped";
+  const Case c = short_ejection();
+  std::int64_t step = 0;
+  const auto count = [&](const Moment& m) { step = m.step; };
+  EXPECT_EQ(run(c, {.files = RunFiles{.directory = place, .command = "here"},
+                    .observe = count,
+                    .stop = [&] { return step == 4; }})
+                .end,
+            RunEnd::stopped);
+  EXPECT_FALSE(finished_run(c, place));
+  const Result r = run(c, {.files = RunFiles{.directory = place, .resume = true, .command = "here"}});
+  EXPECT_EQ(figures_of(r)["bodies"], figures_of(run(c))["bodies"]);
+  ASSERT_TRUE(finished_run(c, place));
+  EXPECT_EQ(finished_run(c, place)->quantities["bodies"], r.quantities["bodies"]);
+  EXPECT_FALSE(finished_run(short_ejection(600), place)) << "of another case";
+}
+
+TEST(Run, ACaseThatCannotStartLeavesTheEarlierRunAsItWas) {
+  const ScratchDirectory scratch;
+  const std::filesystem::path place = scratch.path() / "run";
+  const Case c = short_ejection();
+  run(c, {.files = RunFiles{.directory = place, .command = "here"}});
+  Case bad = c;
+  bad.valve.shape = ValveShape::trace;
+  bad.valve.trace = "no-such-trace.csv";
+  EXPECT_THROW(run(bad, {.files = RunFiles{.directory = place, .overwrite = true, .command = "here"}}),
+               Error);
+  EXPECT_TRUE(finished_run(c, place));
+  EXPECT_THROW(run(c, {.files = RunFiles{.directory = place, .command = "here"}}), InputError)
+      << "not asked for";
+  EXPECT_TRUE(finished_run(c, place));
+}
+
+}  // namespace
+}  // namespace ejecta
