@@ -93,12 +93,13 @@ int exit_code_of(RunEnd end) {
 }
 
 int run_into(const std::filesystem::path& directory, const Case& c, RunOptions options) {
+  const std::string typed = command_line_of("run", c, options);
   options.out = directory.string();
   const auto command = [&c](const RunOptions& o) { return command_line_of("run", c, o); };
   std::optional<SignalWatch> signals;  // until the first step a signal ends the program at once
   ProgressOfRun progress(c, options, directory);
   Context context{
-      .files = RunFiles{directory, options.force, options.resume, command(options), options.overrides},
+      .files = RunFiles{directory, options.force, options.resume, typed, command(options), options.overrides},
       .threads = options.threads,
       .observe =
           [&](const Moment& m) {

@@ -83,7 +83,7 @@ class Archive {
       read_checkpoint(model, clock, wall);
     } catch (const Error& e) {
       throw InputError(fmt::format("{} cannot be resumed: {}\n  start anew:  {} --force",
-                                   files_.directory.string(), e.what(), files_.command));
+                                   files_.directory.string(), e.what(), files_.here));
     }
     reader_.reset();
     directory_.remove_result();
@@ -98,7 +98,7 @@ class Archive {
     throw InputError(fmt::format(
         "{} was started with another case: {} changed\n  go on as it was:  ejecta run {} --out {} --resume\n"
         "  start anew:       {} --force",
-        path, joined(changed), (files_.directory / "case.toml").string(), path, files_.command));
+        path, joined(changed), (files_.directory / "case.toml").string(), path, files_.here));
   }
 
   std::optional<double> find_checkpoint(const Note& note) {

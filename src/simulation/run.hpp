@@ -29,7 +29,8 @@ struct RunFiles {
   std::filesystem::path directory;
   bool overwrite = false;                ///< a run that is there
   bool resume = false;                   ///< go on from its last good checkpoint
-  std::string command;                   ///< what the user types for this run: for the manifest and in advice
+  std::string command;                   ///< what the user typed, for the manifest
+  std::string here;                      ///< the same with this directory named, for advice
   std::vector<std::string> overrides{};  ///< what it changes in the case, "section.key=value"
 };
 

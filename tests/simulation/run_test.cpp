@@ -64,13 +64,13 @@ TEST(Run, StoppedAndResumedIsTheUndisturbedOne) {
   const Case c = short_ejection();
   std::int64_t step = 0;
   const auto count = [&](const Moment& m) { step = m.step; };
-  EXPECT_EQ(run(c, {.files = RunFiles{.directory = place, .command = "here"},
+  EXPECT_EQ(run(c, {.files = RunFiles{.directory = place, .command = "typed"},
                     .observe = count,
                     .stop = [&] { return step == 4; }})
                 .end,
             RunEnd::stopped);
   EXPECT_FALSE(finished_run(c, place));
-  const Result r = run(c, {.files = RunFiles{.directory = place, .resume = true, .command = "here"}});
+  const Result r = run(c, {.files = RunFiles{.directory = place, .resume = true, .command = "typed"}});
   EXPECT_EQ(figures_of(r)["bodies"], figures_of(run(c))["bodies"]);
   ASSERT_TRUE(finished_run(c, place));
   EXPECT_EQ(finished_run(c, place)->quantities["bodies"], r.quantities["bodies"]);
@@ -81,14 +81,14 @@ TEST(Run, ACaseThatCannotStartLeavesTheEarlierRunAsItWas) {
   const ScratchDirectory scratch;
   const std::filesystem::path place = scratch.path() / "run";
   const Case c = short_ejection();
-  run(c, {.files = RunFiles{.directory = place, .command = "here"}});
+  run(c, {.files = RunFiles{.directory = place, .command = "typed"}});
   Case bad = c;
   bad.valve.shape = ValveShape::trace;
   bad.valve.trace = "no-such-trace.csv";
-  EXPECT_THROW(run(bad, {.files = RunFiles{.directory = place, .overwrite = true, .command = "here"}}),
+  EXPECT_THROW(run(bad, {.files = RunFiles{.directory = place, .overwrite = true, .command = "typed"}}),
                Error);
   EXPECT_TRUE(finished_run(c, place));
-  EXPECT_THROW(run(c, {.files = RunFiles{.directory = place, .command = "here"}}), InputError)
+  EXPECT_THROW(run(c, {.files = RunFiles{.directory = place, .command = "typed"}}), InputError)
       << "not asked for";
   EXPECT_TRUE(finished_run(c, place));
 }
