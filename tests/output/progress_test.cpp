@@ -102,7 +102,8 @@ TEST(Progress, TheTimeLeftFollowsTheSpeedOfLate) {
 }
 
 TEST(OperatorTable, AccountsForAllTheTime) {
-  const std::vector<ejecta::OperatorTime> operators{{"flow.predict", "", 3.0, 10}, {"flow.project", "", 5.0, 20}};
+  const std::vector<ejecta::OperatorTime> operators{{"flow.predict", "", 3.0, 10},
+                                                    {"flow.project", "", 5.0, 20}};
   const std::string table = operator_table(operators, 10.0);
   EXPECT_THAT(table, HasSubstr("flow.project      5.000    50.0        20"));
   EXPECT_THAT(table, HasSubstr("the rest          2.000    20.0"));
