@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "base/error.hpp"
+#include "base/file_lock.hpp"
 #include "base/sha256.hpp"
 #include "case/load.hpp"
 #include "case/write.hpp"
@@ -115,6 +116,10 @@ JetProfile stored_or_computed_jet(const Case& c, double height, const Note& note
   if (auto profile = read_jet(shipped_jet_file(c, height), note)) return *profile;
   const std::filesystem::path file = jet_file(c, height);
   if (auto profile = read_jet(file, note)) return *profile;
+  // Of many runs that start together one computes the jet; the others wait for it.
+  std::filesystem::create_directories(file.parent_path());
+  const FileLock lock(file.string() + ".lock");
+  if (auto profile = read_jet(file, {})) return *profile;
   if (note) note(fmt::format("computing the jet of {} once; it is kept in {}", c.path, file.string()));
   JetModel jet(c);
   ProfileRecorder recorder(jet, height);
