@@ -155,20 +155,40 @@ std::string beside_case(const Case& c, const std::string& file) {
   return (std::filesystem::path(c.path).parent_path() / file).string();
 }
 
-Case with_absolute_files(Case c) {
-  const auto resolve = [&](std::string& file) {
-    if (!file.empty()) file = std::filesystem::absolute(beside_case(c, file)).lexically_normal().string();
-  };
-  resolve(c.valve.trace);
-  resolve(c.jet.source_case);
-  for (BodySpec& b : c.bodies) {
-    resolve(b.file);
-    resolve(b.path);
-    for (std::string& file : b.files) resolve(file);
+namespace {
+
+/// visit(file) for every file that a case names, as it names it.
+template <class C, class Visit>
+void for_each_file(C& c, const Visit& visit) {
+  visit(c.valve.trace);
+  visit(c.jet.source_case);
+  for (auto& b : c.bodies) {
+    visit(b.file);
+    visit(b.path);
+    for (auto& file : b.files) visit(file);
   }
-  for (WallSpec& w : c.walls) resolve(w.file);
-  for (MeasuredSpec& m : c.measured) resolve(m.file);
+  for (auto& w : c.walls) visit(w.file);
+  for (auto& m : c.measured) visit(m.file);
+}
+
+}  // namespace
+
+Case with_absolute_files(Case c) {
+  for_each_file(c, [&](std::string& file) {
+    if (!file.empty()) file = std::filesystem::absolute(beside_case(c, file)).lexically_normal().string();
+  });
   return c;
+}
+
+std::vector<std::string> files_of(const Case& c) {
+  std::vector<std::string> files;
+  for_each_file(c, [&](const std::string& file) {
+    if (!file.empty())
+      files.push_back(std::filesystem::absolute(beside_case(c, file)).lexically_normal().string());
+  });
+  std::sort(files.begin(), files.end());
+  files.erase(std::unique(files.begin(), files.end()), files.end());
+  return files;
 }
 
 Case load_case(const std::string& path, const std::vector<std::string>& overrides,

@@ -118,7 +118,7 @@ JetProfile stored_or_computed_jet(const Case& c, double height, const Note& note
   if (auto profile = read_jet(file, note)) return *profile;
   // Of many runs that start together one computes the jet; the others wait for it.
   std::filesystem::create_directories(file.parent_path());
-  const FileLock lock(file.string() + ".lock");
+  const FileLock lock(file.parent_path() / ("lock-" + file.filename().string()));
   if (auto profile = read_jet(file, {})) return *profile;
   if (note) note(fmt::format("computing the jet of {} once; it is kept in {}", c.path, file.string()));
   JetModel jet(c);

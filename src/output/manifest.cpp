@@ -5,6 +5,7 @@
 
 #include <chrono>
 #include <fstream>
+#include <sstream>
 #include <thread>
 
 #include "base/real.hpp"
@@ -28,6 +29,17 @@ std::int64_t memory_bytes() {
 
 }  // namespace
 
+nlohmann::ordered_json digests_of(const std::vector<std::string>& files) {
+  auto all = nlohmann::ordered_json::object();
+  for (const std::string& file : files) {
+    std::ostringstream text;
+    std::ifstream in(file, std::ios::binary);
+    text << in.rdbuf();
+    all[file] = in ? sha256_hex(text.str()) : "";
+  }
+  return all;
+}
+
 nlohmann::ordered_json make_manifest(const Provenance& p) {
   utsname system{};
   ::uname(&system);
@@ -41,6 +53,7 @@ nlohmann::ordered_json make_manifest(const Provenance& p) {
           {"case", p.case_path},
           {"set", p.overrides},
           {"input_sha256", sha256_hex(p.input)},
+          {"files", digests_of(p.files)},
           {"started", fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::chrono::system_clock::now()))},
           {"threads", p.threads},
           {"machine",

@@ -14,8 +14,11 @@ struct Provenance {
   std::string input;  ///< resolved case: its SHA-256 is the input hash
   int threads = 1;
   std::vector<std::string> overrides{};  ///< what the command changed in the case, "section.key=value"
+  std::vector<std::string> files{};      ///< that the case reads: meshes, traces, ...
 };
 
+/// SHA-256 of each file by its name, {"/a/rock.stl": "..."}; "" of one that cannot be read.
+nlohmann::ordered_json digests_of(const std::vector<std::string>& files);
 /// manifest.json: version, git revision, compiler, flags, precision, machine, threads, input hash, start.
 nlohmann::ordered_json make_manifest(const Provenance& p);
 /// The lines that start a history file.

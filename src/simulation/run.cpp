@@ -34,7 +34,7 @@ std::string input_of(const Case& c) { return write_case(with_absolute_files(c));
 /// The files of a run: its directory, its outputs, its checkpoints.
 class Archive {
  public:
-  Archive(const Case& c, const CoupledModel& model, const RunFiles& files, const Note& note)
+  Archive(const Case& c, CoupledModel& model, const RunFiles& files, const Note& note)
       : files_(files),
         directory_(files.resume ? output::RunDirectory::open(files.directory)
                                 : output::RunDirectory::create(files.directory, files.overwrite)),
@@ -43,11 +43,14 @@ class Archive {
                                         .case_path = c.path,
                                         .input = input_of(c),
                                         .threads = thread_count(),
-                                        .overrides = files.overrides};
+                                        .overrides = files.overrides,
+                                        .files = files_of(c)};
     std::optional<double> resumed;
     if (files.resume) {
       refuse_another_case(provenance.input);
+      refuse_changed_files(provenance.files);
       resumed = find_checkpoint(note);
+      restore_model(model);  // before anything is cut off what the run has written
     }
     directory_.write_case(provenance.input);
     if (!files.resume) directory_.write_manifest(output::make_manifest(provenance));
@@ -77,14 +80,11 @@ class Archive {
     store_.commit(w);
   }
 
-  /// A sealed checkpoint that does not fit is one of another version of the program.
-  void restore(CoupledModel& model, Clock& clock, double& wall) {
-    try {
-      read_checkpoint(model, clock, wall);
-    } catch (const Error& e) {
-      throw InputError(fmt::format("{} cannot be resumed: {}\n  start anew:  {} --force",
-                                   files_.directory.string(), e.what(), files_.here));
-    }
+  /// After the model: what the outputs and the clock knew.
+  void restore(Clock& clock, double& wall) {
+    outputs_->restore(reader_->numbers("outputs"));
+    reader_->get("wall_time", std::span<double>(&wall, 1));
+    clock.restore(reader_->at().time, reader_->at().step);
     reader_.reset();
     directory_.remove_result();
   }
@@ -101,6 +101,19 @@ class Archive {
         path, joined(changed), (files_.directory / "case.toml").string(), path, files_.here));
   }
 
+  /// Meshes and traces are not copied into the run: one that has changed since would go on as another.
+  void refuse_changed_files(const std::vector<std::string>& files) const {
+    const auto manifest =
+        nlohmann::json::parse(output::read_file(files_.directory / "manifest.json"), nullptr, false);
+    if (!manifest.is_object() || !manifest.contains("files")) return;
+    const auto& before = manifest["files"];
+    const auto now = output::digests_of(files);
+    for (const auto& [file, digest] : now.items())
+      if (before.contains(file) && before[file] != digest)
+        throw InputError(fmt::format("{} has changed since {} was started\n  start anew:  {} --force", file,
+                                     files_.directory.string(), files_.here));
+  }
+
   std::optional<double> find_checkpoint(const Note& note) {
     auto newest = store_.newest();
     for (const std::string& damage : newest.damaged)
@@ -112,17 +125,21 @@ class Archive {
     return reader_->at().time;
   }
 
-  void read_checkpoint(CoupledModel& model, Clock& clock, double& wall) {
-    const auto fields = model.state_fields();
-    for (std::size_t f = 0; f < fields.size(); ++f)
-      reader_->get(fmt::format("flow/field_{:02}", f), std::span<Real>(fields[f]->data(), fields[f]->size()));
-    std::vector<std::vector<double>> numbers;
-    for (int n = 0; reader_->has(fmt::format("model/numbers_{}", n)); ++n)
-      numbers.push_back(reader_->numbers(fmt::format("model/numbers_{}", n)));
-    model.restore_numbers(numbers, reader_->at().time);
-    outputs_->restore(reader_->numbers("outputs"));
-    reader_->get("wall_time", std::span<double>(&wall, 1));
-    clock.restore(reader_->at().time, reader_->at().step);
+  /// A sealed checkpoint that does not fit is one of another version of the program.
+  void restore_model(CoupledModel& model) const {
+    try {
+      const auto fields = model.state_fields();
+      for (std::size_t f = 0; f < fields.size(); ++f)
+        reader_->get(fmt::format("flow/field_{:02}", f),
+                     std::span<Real>(fields[f]->data(), fields[f]->size()));
+      std::vector<std::vector<double>> numbers;
+      for (int n = 0; reader_->has(fmt::format("model/numbers_{}", n)); ++n)
+        numbers.push_back(reader_->numbers(fmt::format("model/numbers_{}", n)));
+      model.restore_numbers(numbers, reader_->at().time);
+    } catch (const Error& e) {
+      throw InputError(fmt::format("{} cannot be resumed: {}\n  start anew:  {} --force",
+                                   files_.directory.string(), e.what(), files_.here));
+    }
   }
 
   RunFiles files_;
@@ -146,7 +163,7 @@ class Run {
     clock_.add_events_every(c.checkpoint.every_time, 0.0, c.run.end_time);
     // A verdict comes in free flight, which costs nothing: what is left to wait for is the air.
     busy_until_ = std::min(c.run.end_time, air_until(c, company_of(model_->scene())));
-    if (archive_ && context.files->resume) archive_->restore(*model_, clock_, wall_before_);
+    if (archive_ && context.files->resume) archive_->restore(clock_, wall_before_);
   }
 
   Result advance_to_end() {

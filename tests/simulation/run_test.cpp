@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <fstream>
 #include <thread>
 
 #include "app/ejection.hpp"
@@ -91,6 +92,58 @@ TEST(Run, ACaseThatCannotStartLeavesTheEarlierRunAsItWas) {
   EXPECT_THROW(run(c, {.files = RunFiles{.directory = place, .command = "typed"}}), InputError)
       << "not asked for";
   EXPECT_TRUE(finished_run(c, place));
+}
+
+TEST(Run, IsNotResumedWithAMeshThatHasChanged) {
+  const ScratchDirectory scratch;
+  const auto mesh = [&](double height) {
+    std::ofstream(scratch / "roof.stl") << fmt::format(
+        "solid roof\nfacet normal 0 0 1\nouter loop\nvertex -1 -1 {0}\nvertex 1 -1 {0}\nvertex 0 1 {0}\n"
+        "endloop\nendfacet\nendsolid roof\n",
+        height);
+  };
+  mesh(-0.5);
+  const std::string text = R"(
+[run]
+end_time = "5 ms"
+[flow]
+solver = "none"
+[[material]]
+name = "ore"
+density = "2700 kg/m3"
+[[body]]
+name = "ball"
+shape = "sphere"
+diameter = "10 mm"
+material = "ore"
+[[wall]]
+name = "floor"
+kind = "mesh"
+file = "roof.stl"
+material = "ore"
+[output]
+report = false
+)";
+  const Case c = parse_case(text, (scratch / "ball.toml").string());
+  const std::filesystem::path place = scratch / "run";
+  const auto files = [&](bool resume) {
+    return RunFiles{.directory = place, .resume = resume, .here = "again"};
+  };
+  std::int64_t step = 0;
+  ASSERT_EQ(run(c, {.files = files(false),
+                    .observe = [&](const Moment& m) { step = m.step; },
+                    .stop = [&] { return step == 4; }})
+                .end,
+            RunEnd::stopped);
+  mesh(-0.4);
+  try {
+    run(c, {.files = files(true)});
+    FAIL() << "went on with another mesh";
+  } catch (const InputError& e) {
+    EXPECT_NE(std::string(e.what()).find("roof.stl has changed"), std::string::npos) << e.what();
+  }
+  mesh(-0.5);
+  EXPECT_NE(run(c, {.files = files(true)}).end, RunEnd::stopped);
 }
 
 }  // namespace
