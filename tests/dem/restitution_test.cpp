@@ -82,7 +82,9 @@ void collide(Particles& p) {
 
 bool finest(const Kind& kind) { return std::string_view(kind.name) == "mesh of 5120"; }
 
+/// The finest mesh on all surfaces at all three: EJECTA_ALL_PAIRS=1.
 TEST(Restitution, OfEveryShapeOnEverySurface) {
+  const bool every = std::getenv("EJECTA_ALL_PAIRS") != nullptr;
   for (const double e : {0.1, 0.5, 0.9}) {
     const Case c = elastic(e);
     const Materials materials(c);
@@ -103,7 +105,7 @@ TEST(Restitution, OfEveryShapeOnEverySurface) {
                                               Vec3(0, 0, -10e-3))));
     for (const Kind& kind : kinds())
       for (const auto& [name, wall] : walls) {
-        if (finest(kind) && (e != 0.5 || (name != "plane" && name != "divided 7"))) continue;
+        if (!every && finest(kind) && (e != 0.5 || (name != "plane" && name != "divided 7"))) continue;
         Particles p(Vec3(0, 0, 0), materials, c.contact);
         p.add(wall);
         Body b = thrown(kind, materials, 0.0, -kSpeed, false);
@@ -115,8 +117,9 @@ TEST(Restitution, OfEveryShapeOnEverySurface) {
   }
 }
 
-/// A corner of three or five edges on an edge, or between four legs, is pushed to the side: no central
-/// impact.
+/// A corner of three or five edges on an edge, or between four legs, has no axis in common with it: the force
+/// leans by 4 to 14 degrees and misses both centres by up to 2 mm, the bodies part sideways with 5 to 35
+/// rad/s. No place or turn of the bodies makes that a central impact.
 bool lopsided(const Kind& a, const Kind& b) {
   const std::string_view odd = a.name, even = b.name;
   return (odd == "box on corner" || odd == "mesh of 20") &&
