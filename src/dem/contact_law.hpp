@@ -4,9 +4,6 @@
 /// Contact laws: pure functions of one contact (or of eight, T = Lanes). They never ask what touches what.
 namespace ejecta {
 
-/// Of the square of Coulomb's limit: a spring that holds less is stuck.
-inline constexpr double kStuck = 0.98;
-
 /// Constants of a pair of materials.
 template <class T>
 struct PairConstants {
@@ -91,11 +88,7 @@ EJECTA_INLINE T dashpot_of(const NormalSpring<T>& s, const Contact<T>& c, const 
 
 /// Force of a contact with friction: a spring and a dashpot side by side, behind them a slider that gives way
 /// at Coulomb's limit. `slip` is the history: the stretch of the spring (m), turned into the tangent plane,
-/// lengthened by the motion over dt less what the slider gives: that leaves spring and dashpot the limit. The
-/// spring grows stiffer with the dent d; what this adds to its energy k(d) s^2/2 the normal force pays while
-/// it sticks, k'(d) s^2/2 more than Hertz's (or a ball that is pushed along, in, back and out gains up to 8 %
-/// x mu^2 of the energy of its dent, 0.2 % where it only bounces): all springs together have one energy. What
-/// slides pays with what it loses. The tangential dashpot is the normal one times sqrt(tangential / tangent
+/// lengthened by the motion over dt less what the slider gives: that leaves spring and dashpot the limit. The tangential dashpot is the normal one times sqrt(tangential / tangent
 /// stiffness), as for two oscillators of equal damping ratio (Tsuji, Tanaka & Ishida 1992, Powder Technol.
 /// 71:239).
 template <class T>
@@ -105,10 +98,8 @@ EJECTA_INLINE ContactForce<T> contact_force(const NormalSpring<T>& s, const Cont
   const T dashpot = dashpot_of(s, c, p);
   const T approach = dot(c.velocity, c.normal);  // > 0: parting
   slip = slip - dot(slip, c.normal) * c.normal;
-  const T spring = s.secant * c.overlap, most = (p.friction * p.friction * kStuck) * spring * spring;
-  const T held = s.tangential * s.tangential * dot(slip, slip);
-  const T wedging = 0.5 * s.stiffening * (held < most ? held : T{}) / (s.tangential * c.overlap);
-  T normal = spring + wedging - dashpot * approach;
+  const T spring = s.secant * c.overlap;
+  T normal = spring - dashpot * approach;
   if (!allow_tension) normal = larger(normal, T{});
 
   const Triple<T> sliding = c.velocity - approach * c.normal;
