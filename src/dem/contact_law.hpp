@@ -88,9 +88,9 @@ EJECTA_INLINE T dashpot_of(const NormalSpring<T>& s, const Contact<T>& c, const 
 
 /// Force of a contact with friction: a spring and a dashpot side by side, behind them a slider that gives way
 /// at Coulomb's limit. `slip` is the history: the stretch of the spring (m), turned into the tangent plane,
-/// lengthened by the motion over dt less what the slider gives: that leaves spring and dashpot the limit. The tangential dashpot is the normal one times sqrt(tangential / tangent
-/// stiffness), as for two oscillators of equal damping ratio (Tsuji, Tanaka & Ishida 1992, Powder Technol.
-/// 71:239).
+/// lengthened by the motion over dt less what the slider gives, which leaves spring and dashpot the limit.
+/// The tangential dashpot is the normal one times sqrt(tangential / tangent stiffness), as for two
+/// oscillators of equal damping ratio (Tsuji, Tanaka & Ishida 1992, Powder Technol. 71:239).
 template <class T>
 EJECTA_INLINE ContactForce<T> contact_force(const NormalSpring<T>& s, const Contact<T>& c,
                                             const PairConstants<T>& p, bool allow_tension, double dt,

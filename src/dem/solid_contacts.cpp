@@ -269,7 +269,7 @@ void SolidContacts::apply_laws(const World& world, int begin, int end, double dt
   }
   if (!(least > 0)) return;
   // With the factor f: f^2 least = stored now = had - f half.
-  const double slack = dt * (whole ? 0.5 * std::abs(power + parting) : error * std::abs(power));
+  const double slack = dt * (error * std::abs(power) + (whole ? 0.5 * std::abs(power + parting) : 0.0));
   const double had = std::max(0.0, stored + 0.5 * dt * power + slack), half = 0.5 * dt * parting;
   const double factor =
       std::clamp((std::sqrt(half * half + 4 * least * had) - half) / (2 * least), kLeastFactor, 1.0);
