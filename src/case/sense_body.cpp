@@ -16,6 +16,8 @@
 namespace ejecta {
 namespace {
 
+constexpr double kLevel = 1e-9;  // part of a normal that is round-off
+
 void require_material(const Case& c, const std::string& key, const std::string& name, Findings& found) {
   if (name.empty()) return;
   std::vector<std::string> known;
@@ -97,6 +99,21 @@ void check_shape(const Case& c, const BodySpec& b, const std::string& key, Findi
   }
 }
 
+/// Walls have images across periodic sides; a plane is its own there, or has none.
+void require_images(const Case& c, const WallSpec& w, const std::string& key, Findings& found) {
+  for (const std::string& axis : c.domain.periodic) {
+    const std::size_t a = std::string("xyz").find(axis);
+    if (a > 2 || std::abs(w.normal[static_cast<Eigen::Index>(a)]) <= kLevel * w.normal.norm()) continue;
+    found.error(
+        key + ".normal",
+        fmt::format("{} is periodic, and a plane that is not parallel to it does not go on beyond the "
+                    "sides",
+                    axis),
+        fmt::format("a normal without a part along {}, or a wall of kind \"box\" or \"plate\"", axis),
+        "kind = \"plate\"");
+  }
+}
+
 }  // namespace
 
 void sense_materials(const Case& c, Findings& found) {
@@ -175,6 +192,7 @@ void sense_walls(const Case& c, Findings& found) {
                   "normal = [0, 0, 1]");
     if (w.kind == WallKind::mesh) require_file(c, key + ".file", w.file, "mesh", found);
     const bool endless = w.kind == WallKind::belt && w.size.isZero();
+    if (w.kind == WallKind::plane || endless) require_images(c, w, key, found);
     const int flat = w.kind == WallKind::box                                               ? 3
                      : w.kind == WallKind::plate || (w.kind == WallKind::belt && !endless) ? 2
                                                                                            : 0;

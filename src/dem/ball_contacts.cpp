@@ -132,7 +132,7 @@ void BallContacts::compute_groups(const Parts& parts, const Materials& materials
   const std::size_t from = Planes ? at(planes_from_) : 0, to = Planes ? a_.size() : at(planes_from_);
   const int groups = static_cast<int>((to - from) / kLanes);
   const bool one_material = materials.count() == 1, allow_tension = materials.allow_tension();
-  const bool periodic = domain.periodic();
+  const bool periodic = domain.periodic(), births = births_;
   constexpr int same[kLanes] = {};
   const BallRow any;
   PairConstants<Lanes> constants;
@@ -142,11 +142,17 @@ void BallContacts::compute_groups(const Parts& parts, const Materials& materials
   // loops let the processor work on several groups at once.
   const auto meet = [&](std::size_t n) __attribute__((always_inline)) {
     const BallLanes a = load_balls(balls, a_.data() + n), b = load_balls(others, b_.data() + n);
+    const auto dent = [&](const Lanes& overlap) __attribute__((always_inline)) {
+      if (!births) return overlap;
+      LooseLanes& born = lanes_at(history_[kBirth], n);
+      born = larger(Lanes(born < overlap ? born : overlap), Lanes{});
+      return Lanes(overlap - born);
+    };
     Contact<Lanes> c;
     Triple<Lanes> arms;
     if constexpr (Planes) {
       c.normal = b.centre;
-      c.overlap = a.radius + b.radius - dot(b.centre, a.centre);
+      c.overlap = dent(a.radius + b.radius - dot(b.centre, a.centre));
       c.radius = a.radius;
       c.mass = (Lanes{} + 1.0) / a.inverse_mass;
       arms = (a.radius - 0.5 * c.overlap) * a.spin;
@@ -162,7 +168,7 @@ void BallContacts::compute_groups(const Parts& parts, const Materials& materials
       // Divisions take longest: one for three.
       const Lanes part = (Lanes{} + 1.0) / (radii * masses * distance), both = part * distance;
       c.normal = (part * radii * masses) * apart;
-      c.overlap = radii - distance;
+      c.overlap = dent(radii - distance);
       c.radius = a.radius * b.radius * masses * both;
       c.mass = radii * both;
       arms = (a.radius - 0.5 * c.overlap) * a.spin + (b.radius - 0.5 * c.overlap) * b.spin;
@@ -242,28 +248,18 @@ void BallContacts::share_energy(const Parts& parts, const Materials& materials, 
     double energy;
   };
   const auto spring_of = [&](int n) -> Spring {
+    const Nearing near = nearing(n, parts, domain);
     const BallRow& a = parts.row(a_[at(n)]);
     Contact<double> c;
-    Vec3 normal;
-    int other;
-    if (n >= planes_from_) {
-      const BallRow& plane = planes_[at(b_[at(n)])];
-      normal = plane.centre();
-      c.overlap = a.radius + plane.radius - normal.dot(a.centre());
-      c.radius = a.radius;
-      other = static_cast<int>(plane.material);
-    } else {
-      const BallRow& b = parts.row(b_[at(n)]);
-      const Vec3 apart = domain.nearest(a.centre() - b.centre());
-      normal = apart.normalized();
-      c.overlap = a.radius + b.radius - apart.norm();
-      c.radius = a.radius * b.radius / (a.radius + b.radius);
-      other = static_cast<int>(b.material);
-    }
-    if (!(c.overlap > 0)) return {normal, 0.0};
-    const PairConstants<double>& p = materials.pair(static_cast<int>(a.material), other);
-    return {normal, materials.law() == ContactLaw::linear ? LinearSpring::spring(c, p).energy
-                                                          : HertzMindlin::spring(c, p).energy};
+    c.overlap = near.overlap - std::min(near.overlap, history_[kBirth][at(n)]);
+    if (!(c.overlap > 0)) return {near.normal, 0.0};
+    const bool plane = n >= planes_from_;
+    const BallRow& b = plane ? planes_[at(b_[at(n)])] : parts.row(b_[at(n)]);
+    c.radius = plane ? a.radius : a.radius * b.radius / (a.radius + b.radius);
+    const PairConstants<double>& p =
+        materials.pair(static_cast<int>(a.material), static_cast<int>(b.material));
+    return {near.normal, materials.law() == ContactLaw::linear ? LinearSpring::spring(c, p).energy
+                                                               : HertzMindlin::spring(c, p).energy};
   };
   for_each_block(static_cast<int>(groups_.size()) - 1, kBlock, [&](int, int begin, int end) {
     thread_local std::vector<Spring> springs;

@@ -30,6 +30,9 @@ class BallContacts {
   /// were there before are kept.
   using Pairs = std::span<const std::pair<int, int>>;
   void set_pairs(Pairs balls, Pairs planes, const Parts& parts);
+  /// Bodies (by index) that were put where they are during the last dt. What overlapped there is no dent: no
+  /// work was done on it. Its contacts begin from that overlap, as long as it lasts.
+  void note_births(std::span<const char> fresh, const Parts& parts, const Domain& domain, double dt);
   void add(const WallPlane& plane, const Wall& wall);
   /// Evaluates the law on every pair and moves the histories over dt.
   void compute(const Parts& parts, const Materials& materials, const Domain& domain, double dt);
@@ -44,6 +47,11 @@ class BallContacts {
   /// Slip (m) and roll (rad) of a pair: x, y, z each.
   std::array<double, 6> friction(int n) const;
   void set_friction(int n, const std::array<double, 6>& h);
+  /// Of a pair that touches, J, what its contact may give back at most. A dent that is whole stores what the
+  /// law says, whatever moves in the meantime: more than enough.
+  double energy(int n) const { return (history_[kBirth][at(n)] > 0 ? 1.0 : 2.0) * rows_[at(n)].elastic; }
+  /// Lets a pair have only the share `part` of the dent that it seems to have.
+  void set_dent(int n, double part, const Parts& parts, const Domain& domain);
 
   double elastic() const;     ///< J
   double wall_power() const;  ///< W, done by the moving planes on the balls
@@ -62,6 +70,13 @@ class BallContacts {
  private:
   static std::size_t at(int n) { return static_cast<std::size_t>(n); }
   void arrange(Pairs balls, Pairs planes, int ball_count);
+  void find_births();
+  /// How far a pair overlaps, m, and how fast it nears, m/s.
+  struct Nearing {
+    Vec3 normal{0, 0, 1};
+    double overlap = 0.0, speed = 0.0;
+  };
+  Nearing nearing(int n, const Parts& parts, const Domain& domain) const;
   void index_pairs(int balls);
   void group_pairs(const Parts& parts);
   void share_energy(const Parts& parts, const Materials& materials, const Domain& domain);
@@ -77,17 +92,18 @@ class BallContacts {
   int planes_from_ = 0;
   std::vector<BallRow> planes_{1,
                                untouched()};  // normal, offset, velocity, material; the last touches nothing
-  static constexpr std::size_t kRemembered = 6;
-  std::vector<double> history_[kRemembered];  // slip x, y, z and roll x, y, z of each pair
-  std::vector<double> shares_;                // of the energy that all contacts of the two bodies store
-  std::vector<int> last_a_, last_b_;          // before the pairs were set anew
+  static constexpr std::size_t kBirth = 6, kRemembered = 7;
+  // Of each pair slip x, y, z, roll x, y, z and the overlap with which it was born, m.
+  std::vector<double> history_[kRemembered];
+  std::vector<double> shares_;        // of the energy that all contacts of the two bodies store
+  std::vector<int> last_a_, last_b_;  // before the pairs were set anew
   std::vector<double> last_history_[kRemembered];
   std::vector<PairRow> rows_;
   std::vector<double> moments_[3];  // N m, rolling resistance on a
   std::vector<int> cursor_;
   std::vector<int> first_, entries_;   // of each ball: 2 n for pair n as a, 2 n + 1 as b, in order
   std::vector<int> grouped_, groups_;  // pairs by the two bodies (all walls are one); where each group begins
-  bool rolling_ = false;
+  bool rolling_ = false, births_ = false;
 };
 
 inline double BallContacts::gather(int ball, double radius, Vec4& force, Vec4& torque) const {

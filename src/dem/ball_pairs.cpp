@@ -67,6 +67,41 @@ void BallContacts::set_pairs(Pairs balls, Pairs planes, const Parts& parts) {
   group_pairs(parts);
 }
 
+BallContacts::Nearing BallContacts::nearing(int n, const Parts& parts, const Domain& domain) const {
+  const BallRow& a = parts.row(a_[at(n)]);
+  if (n >= planes_from_) {
+    const BallRow& plane = planes_[at(b_[at(n)])];
+    const Vec3 normal = plane.centre();
+    return {normal, a.radius + plane.radius - normal.dot(a.centre()),
+            normal.dot(plane.velocity() - a.velocity())};
+  }
+  const BallRow& b = parts.row(b_[at(n)]);
+  const Vec3 apart = domain.nearest(a.centre() - b.centre()), normal = apart.normalized();
+  return {normal, a.radius + b.radius - apart.norm(), normal.dot(b.velocity() - a.velocity())};
+}
+
+void BallContacts::note_births(std::span<const char> fresh, const Parts& parts, const Domain& domain,
+                               double dt) {
+  const auto is_fresh = [&](int ball) { return fresh[at(parts.body_of_ball(ball))] != 0; };
+  for (int n = 0; n < pair_count(); ++n) {
+    if (a_[at(n)] == parts.ball_count()) continue;
+    if (!is_fresh(a_[at(n)]) && (n >= planes_from_ || !is_fresh(b_[at(n)]))) continue;
+    const Nearing near = nearing(n, parts, domain);
+    history_[kBirth][at(n)] = std::max(0.0, near.overlap - dt * std::max(0.0, near.speed));
+  }
+  find_births();
+}
+
+void BallContacts::set_dent(int n, double part, const Parts& parts, const Domain& domain) {
+  history_[kBirth][at(n)] = (1 - part) * std::max(0.0, nearing(n, parts, domain).overlap);
+  find_births();
+}
+
+void BallContacts::find_births() {
+  const auto& born = history_[kBirth];
+  births_ = std::any_of(born.begin(), born.end(), [](double m) { return m > 0; });
+}
+
 /// Only bodies of several balls have groups of more than one.
 void BallContacts::group_pairs(const Parts& parts) {
   grouped_.clear();
@@ -141,6 +176,7 @@ void BallContacts::arrange(Pairs balls, Pairs planes, int ball_count) {
   put(planes, at(planes_from_), last_planes_from, last_a_.size());
   grouped_.clear();
   groups_.assign(1, 0);
+  find_births();
   index_pairs(ball_count);
 }
 
@@ -189,6 +225,7 @@ void BallContacts::load(StateReader& in, int balls) {
     for (std::size_t n = 0; n < pairs[k].size(); ++n)
       for (std::size_t h = 0; h < kRemembered; ++h)
         history_[h][n + (k == 0 ? 0 : at(planes_from_))] = histories[k][n][h];
+  find_births();
 }
 
 }  // namespace ejecta

@@ -82,13 +82,15 @@ void CandidateSearch::list_surface(const Wall& wall, int index, const Domain& do
   const Surface& surface = *wall.surface;
   const double reach = item.radius + skin;
   near_.clear();
+  gaps_.clear();
   surface.near(item.centre, reach, [&](int t) {
     const auto& c = surface.triangles()[static_cast<std::size_t>(t)].corners;
     const double height = surface.triangles()[static_cast<std::size_t>(t)].normal.dot(item.centre - c[0]);
-    if (std::abs(height) < reach &&
-        (nearest_on_triangle(item.centre, c[0], c[1], c[2]).point - item.centre).squaredNorm() <
-            reach * reach)
-      near_.push_back(t);
+    if (!(std::abs(height) < reach)) return;
+    const double away = (nearest_on_triangle(item.centre, c[0], c[1], c[2]).point - item.centre).norm();
+    if (!(away < reach)) return;
+    near_.push_back(t);
+    gaps_.push_back(away - item.radius);
   });
   if (near_.empty()) return;
   const auto region_of = [&](int t) { return surface.triangles()[static_cast<std::size_t>(t)].region; };
@@ -97,7 +99,11 @@ void CandidateSearch::list_surface(const Wall& wall, int index, const Domain& do
     if (std::all_of(near_.begin(), near_.end(), [&](int t) { return region_of(t) == first; }) &&
         list_plane(wall, first, domain, n, reach, before))
       return;
-    for (const int t : near_) put(n, {PartKind::wall_triangle, index, t}, balls);
+    for (std::size_t k = 0; k < near_.size(); ++k) {
+      put(n, {PartKind::wall_triangle, index, near_[k]}, balls);
+      solids_.back().listed_at = item.centre - part_of_[n].shift;
+      solids_.back().gap = gaps_[k];
+    }
     return;
   }
   for (int& t : near_) t = region_of(t);

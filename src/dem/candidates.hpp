@@ -51,6 +51,7 @@ class CandidateSearch {
   std::vector<std::pair<int, int>> balls_, planes_;
   std::vector<SolidPair> solids_;
   std::vector<int> near_;
+  std::vector<double> gaps_;  // m, between a ball and the triangles near it
 };
 
 }  // namespace ejecta

@@ -34,6 +34,7 @@ struct ContactForce {
   T spring{};                ///< N, the normal spring alone
   T tangential_stiffness{};  ///< N/m
   T dashpot{}, drag{};       ///< N s/m, normal and tangential
+  T stiffening{};            ///< d ln tangential_stiffness / d ln overlap
   T elastic_normal{};        ///< J, stored in the normal spring
   T elastic_tangential{};    ///< J
 };
@@ -43,6 +44,7 @@ template <class T>
 struct NormalSpring {
   T secant{}, tangential{}, energy{};  ///< N/m, N/m, J
   T sharpness{};                       ///< force^2/(2 energy secant)
+  T stiffening{};                      ///< d ln tangential / d ln overlap
 };
 
 /// Hertz 1882: F = 4/3 E* sqrt(R) d^1.5; Mindlin 1949: tangential stiffness 8 G* sqrt(R d). Johnson 1985,
@@ -56,6 +58,7 @@ struct HertzMindlin {
     s.tangential = 8.0 * p.shear * a;
     s.energy = 0.4 * s.secant * c.overlap * c.overlap;
     s.sharpness = T{} + 1.25;
+    s.stiffening = T{} + 0.5;
     return s;
   }
 };
@@ -83,9 +86,10 @@ EJECTA_INLINE T dashpot_of(const NormalSpring<T>& s, const Contact<T>& c, const 
   return p.damping * root(c.mass * c.share * s.sharpness * s.secant);
 }
 
-/// Force of a contact with friction. `slip` is the history: the stretch of the tangential spring (m), turned
-/// into the tangent plane, lengthened by the motion over dt and cut where the spring would exceed Coulomb's
-/// limit. The tangential dashpot is the normal one times sqrt(tangential / tangent stiffness), as for two
+/// Force of a contact with friction: a spring and a dashpot side by side, behind them a slider that gives way
+/// at Coulomb's limit. `slip` is the history: the stretch of the spring (m), turned into the tangent plane,
+/// lengthened by the motion over dt less what the slider gives, which leaves spring and dashpot the limit.
+/// The tangential dashpot is the normal one times sqrt(tangential / tangent stiffness), as for two
 /// oscillators of equal damping ratio (Tsuji, Tanaka & Ishida 1992, Powder Technol. 71:239).
 template <class T>
 EJECTA_INLINE ContactForce<T> contact_force(const NormalSpring<T>& s, const Contact<T>& c,
@@ -93,22 +97,24 @@ EJECTA_INLINE ContactForce<T> contact_force(const NormalSpring<T>& s, const Cont
                                             Triple<T>& slip) {
   const T dashpot = dashpot_of(s, c, p);
   const T approach = dot(c.velocity, c.normal);  // > 0: parting
-  T normal = s.secant * c.overlap - dashpot * approach;
+  slip = slip - dot(slip, c.normal) * c.normal;
+  const T spring = s.secant * c.overlap;
+  T normal = spring - dashpot * approach;
   if (!allow_tension) normal = larger(normal, T{});
 
   const Triple<T> sliding = c.velocity - approach * c.normal;
-  slip = slip - dot(slip, c.normal) * c.normal + (T{} + dt) * sliding;
-  const T drag = dashpot * p.drag;
+  slip = slip + (T{} + dt) * sliding;
+  const T drag = dashpot * p.drag, damped = dt * s.tangential + drag;
   Triple<T> tangential = (T{} - s.tangential) * slip - drag * sliding;
-  const T squared = dot(tangential, tangential), size = root(squared);
+  const T size = root(dot(tangential, tangential));
   const T limit = p.friction * larger(normal, T{});
-  // Divisions take longest: one for the cut and the slip that goes with it, which need not wait for the root.
-  const T both = (T{} + 1.0) / (squared * s.tangential);
-  const T cut = size > limit ? limit * size * s.tangential * both : T{} + 1.0;
+  // Divisions take longest: one for the cut and for what the slider gives.
+  const T both = (T{} + 1.0) / (size * damped);
+  const T cut = size > limit ? limit * damped * both : T{} + 1.0;
+  const Triple<T> given = ((size - limit) * dt * both) * tangential;
+  slip = {size > limit ? slip.x + given.x : slip.x, size > limit ? slip.y + given.y : slip.y,
+          size > limit ? slip.z + given.z : slip.z};
   tangential = cut * tangential;
-  const Triple<T> cut_slip = (T{} - squared * both) * tangential;
-  slip = {size > limit ? cut_slip.x : slip.x, size > limit ? cut_slip.y : slip.y,
-          size > limit ? cut_slip.z : slip.z};
 
   ContactForce<T> f;
   f.force = normal * c.normal + tangential;
@@ -116,7 +122,8 @@ EJECTA_INLINE ContactForce<T> contact_force(const NormalSpring<T>& s, const Cont
   f.tangential_stiffness = s.tangential;
   f.dashpot = dashpot;
   f.drag = drag;
-  f.spring = s.secant * c.overlap;
+  f.stiffening = s.stiffening;
+  f.spring = spring;
   f.elastic_normal = s.energy;
   f.elastic_tangential = 0.5 * s.tangential * dot(slip, slip);
   return f;
@@ -130,13 +137,17 @@ EJECTA_INLINE ContactForce<T> contact_force(const Contact<T>& c, const PairConst
 
 /// Elastic-plastic rolling resistance (Iwashita & Oda 1998; type C of Ai et al. 2011, Powder Technol.
 /// 206:269): a spring against relative rolling, k = k_t R^2, cut at mu_r R F_n. `roll`: its angle (rad),
-/// history. `spin`: angular velocity of a relative to b, rad/s. Returns the moment on a, N m.
+/// history; where a growing dent makes the spring stiffer it keeps its energy. `spin`: angular velocity of a
+/// relative to b, rad/s. Returns the moment on a, N m.
 template <class T>
 EJECTA_INLINE Triple<T> rolling_moment(const Contact<T>& c, const PairConstants<T>& p,
                                        const ContactForce<T>& f, const Triple<T>& spin, double dt,
                                        Triple<T>& roll) {
   const T stiffness = f.tangential_stiffness * c.radius * c.radius;
-  roll = roll - dot(roll, c.normal) * c.normal + (T{} + dt) * (spin - dot(spin, c.normal) * c.normal);
+  const T nearing = larger(T{} - dot(c.velocity, c.normal), T{});
+  const T kept = larger(T{} + 1.0 - (0.5 * dt) * f.stiffening * nearing / c.overlap, T{});
+  roll =
+      kept * (roll - dot(roll, c.normal) * c.normal) + (T{} + dt) * (spin - dot(spin, c.normal) * c.normal);
   const T size = stiffness * root(dot(roll, roll));
   const T limit = p.rolling * c.radius * larger(f.normal, T{});
   const T cut = size > limit ? limit / size : T{} + 1.0;
@@ -144,23 +155,32 @@ EJECTA_INLINE Triple<T> rolling_moment(const Contact<T>& c, const PairConstants<
   return (T{} - stiffness) * roll;
 }
 
+/// Twist of a flat contact, history: angle (rad) of its spring, and that spring's stiffness (N m/rad).
+struct Twist {
+  double angle = 0.0, stiffness = 0.0;
+  bool operator==(const Twist&) const = default;
+};
+
 /// Moment of a flat contact, of springs and dashpots spread evenly over a round patch of radius a. Returns
 /// what acts on a, N m; `spin`: angular velocity of a relative to b, rad/s. Twisting about the normal: second
-/// moment a^2/2 times tangential stiffness and drag, cut where all of the patch slides, 2/3 mu F_n a;
-/// `twist`: angle (rad), history. Tilting: second moment a^2/4 times the dashpot (the spring is in the place
-/// of the contact point), cut at F_n a, beyond which the load would lie outside the patch.
+/// moment a^2/2 times tangential stiffness and drag, cut where all of the patch slides, 2/3 mu F_n a, as the
+/// force is. Tilting: second moment a^2/4 times the dashpot (the spring is in the place of the contact
+/// point), cut at F_n a, beyond which the load would lie outside the patch.
 inline Triple<double> patch_moment(double a, const Triple<double>& normal, const PairConstants<double>& p,
                                    const ContactForce<double>& f, const Triple<double>& spin, double dt,
-                                   double& twist) {
-  const double stiffness = 0.5 * f.tangential_stiffness * a * a;
+                                   Twist& twist) {
+  const double stiffness = 0.5 * f.tangential_stiffness * a * a, drag = 0.5 * a * a * f.drag;
   if (!(stiffness > 0)) return {};
   const double pressing = larger(f.normal, 0.0), twisting = dot(spin, normal);
   const double limit = 2.0 / 3.0 * p.friction * pressing * a;
-  twist += dt * twisting;
-  double about_normal = -stiffness * twist - 0.5 * a * a * f.drag * twisting;
+  // As rolling: a patch that grows is no reason for more energy.
+  const double kept = stiffness > twist.stiffness ? root(twist.stiffness / stiffness) : 1.0;
+  twist = {kept * twist.angle + dt * twisting, stiffness};
+  double about_normal = -stiffness * twist.angle - drag * twisting;
   if (about_normal > limit || about_normal < -limit) {
-    about_normal = about_normal > 0 ? limit : -limit;
-    twist = -about_normal / stiffness;
+    const double most = about_normal > 0 ? limit : -limit;
+    twist.angle += dt * (about_normal - most) / (dt * stiffness + drag);
+    about_normal = most;
   }
   const Triple<double> tilting = spin - twisting * normal;
   const double damping = 0.25 * a * a * f.dashpot, size = damping * root(dot(tilting, tilting));

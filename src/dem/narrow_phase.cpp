@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <span>
 
 #include "dem/overlap.hpp"
 #include "dem/solid_contacts.hpp"
@@ -85,11 +86,29 @@ bool beyond(const Polytope& solid, const HalfSpace& plane) {
   return plane.normal.dot(support_polytope(solid, plane.normal)) > plane.offset;
 }
 
+/// Whether a reaches as deep into b (in axes that `rotation` and `shift` take to those of a), along -out, as
+/// the first corner of b's far side lies. Above that depth b is the same without its far side: a straight way
+/// from a point of it to what was left out would cross that side there.
+bool reaches_far_side(const Polytope& b, const Mat3& rotation, const Vec3& shift, const Vec3& out,
+                      const Polytope& a) {
+  const Vec3 along = rotation.transpose() * out;
+  const double deepest = out.dot(support_polytope(a, -out) - shift);
+  if (along.dot(support_polytope(b, along)) < deepest) return true;  // nothing is shared
+  return std::any_of(b.faces.begin(), b.faces.end(), [&](const Polytope::Face& f) {
+    if (!(f.normal.dot(along) < kFarSide)) return false;
+    const auto corners =
+        std::span(b.corners).subspan(static_cast<std::size_t>(f.first), static_cast<std::size_t>(f.count));
+    return std::any_of(corners.begin(), corners.end(),
+                       [&](int v) { return along.dot(b.vertices[static_cast<std::size_t>(v)]) >= deepest; });
+  });
+}
+
 /// The faces of b (in axes that `rotation` and `shift` take to those of a) but for those on its far side, as
 /// seen along `out`. Nothing unless a reaches beyond one of these.
 bool without_far_side(const Polytope& b, const Mat3& rotation, const Vec3& shift, const Vec3& out,
                       const Polytope& a, std::vector<HalfSpace>& planes) {
   planes.clear();
+  if (!reaches_far_side(b, rotation, shift, out, a)) return false;
   bool pierced = false;
   for (const Polytope::Face& f : b.faces) {
     const Vec3 normal = rotation * f.normal;
@@ -116,8 +135,7 @@ Overlap overlap_solids(const Polytope& a, const Polytope& b, const Mat3& rotatio
       return o;
     }
   }
-  Overlap o = overlap_polytopes(a, b, rotation, shift);
-  return o;
+  return overlap_polytopes(a, b, rotation, shift);
 }
 
 /// Of a polytope with what lies behind a region of a surface; z is measured from its plane. `side`: on which

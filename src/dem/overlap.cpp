@@ -181,14 +181,22 @@ Overlap overlap_cell(const Polytope& a, std::span<const HalfSpace> planes) {
   Scratch& s = scratch();
   s.cell.clear();
   bool first_cuts = false;
+  const double hair = 1e-10 * a.radius;  // as in overlap_polytopes
   for (std::size_t n = 0; n < planes.size(); ++n) {
     const double height = planes[n].normal.dot(a.centre) - planes[n].offset;
     if (height >= a.radius) return o;
     if (height <= -a.radius) continue;
+    double low = a.radius, high = -a.radius;
+    for (const Vec3& v : a.vertices) {
+      const double h = planes[n].normal.dot(v) - planes[n].offset;
+      low = std::min(low, h);
+      high = std::max(high, h);
+    }
+    if (low >= 0) return o;
+    if (high < -hair) continue;
     first_cuts = first_cuts || n == 0;
     s.cell.push_back(planes[n]);
   }
-  const double hair = 1e-10 * a.radius;  // as in overlap_polytopes
   Sums sums;
   bool started = false;
   if (!s.cell.empty())

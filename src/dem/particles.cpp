@@ -272,8 +272,11 @@ void Particles::list_candidates(double dt) {
   search_.find(parts_, bodies_, walls_, domain_, skin_, &balls_);
   note_friction();
   balls_.set_pairs(search_.balls(), search_.planes(), parts_);
-  solids_.set_pairs(search_.solids());
+  solids_.set_pairs(search_.solids(), fresh_);
   pass_friction_on();
+  if (std::find(fresh_.begin(), fresh_.end(), true) == fresh_.end()) return;
+  balls_.note_births(fresh_, parts_, domain_, dt);
+  std::fill(fresh_.begin(), fresh_.end(), false);
 }
 
 void Particles::note_friction() {
@@ -286,14 +289,16 @@ void Particles::note_friction() {
                            p.b.index,
                            Vec3(h.normal.x, h.normal.y, h.normal.z),
                            {h.slip.x, h.slip.y, h.slip.z, h.roll.x, h.roll.y, h.roll.z},
-                           false});
+                           false,
+                           0.0,
+                           h.dent});
   }
   for (int n = 0; n < balls_.pair_count(); ++n) {
     const auto [ball, plane] = balls_.pair(n);
     if (plane >= 0 || !(balls_.row(n).half_overlap > 0)) continue;
     const WallPlane& w = planes_[static_cast<std::size_t>(-1 - plane)];
     if (!walls_[static_cast<std::size_t>(w.wall)].is_plane)
-      friction_.push_back({ball, w.wall, w.normal, balls_.friction(n), true});
+      friction_.push_back({ball, w.wall, w.normal, balls_.friction(n), true, balls_.energy(n)});
   }
 }
 
@@ -302,9 +307,12 @@ void Particles::pass_friction_on() {
     const Wall& wall = walls_[static_cast<std::size_t>(f.wall)];
     const int planes = 2 * static_cast<int>(wall.surface->regions().size());
     const int as_plane = balls_.find_plane(f.ball, wall.first_plane, wall.first_plane + planes);
-    if (f.plane ? as_plane < 0 : as_plane >= 0 && balls_.friction(as_plane) == std::array<double, 6>{})
-      f.plane ? solids_.hand_over(f.ball, f.wall, f.normal, f.history)
-              : balls_.set_friction(as_plane, f.history);
+    if (f.plane) {
+      if (as_plane < 0) solids_.hand_over(f.ball, f.wall, f.normal, f.history, f.energy);
+    } else if (as_plane >= 0 && balls_.friction(as_plane) == std::array<double, 6>{}) {
+      balls_.set_friction(as_plane, f.history);
+      if (f.dent < 1) balls_.set_dent(as_plane, f.dent, parts_, domain_);
+    }
   }
 }
 

@@ -147,6 +147,7 @@ class Particles {
   std::vector<SphereState> spheres_;   // of bodies that are free spheres, in advance()
   std::vector<ContactPeaks> peaks_;
   std::vector<Presence> presence_;
+  std::vector<char> fresh_;  // which bodies were put where they are since candidates were listed
   struct Launch {
     bool waiting = false;
     Vec3 velocity{0, 0, 0}, spin{0, 0, 0};
@@ -178,6 +179,8 @@ class Particles {
     Vec3 normal{0, 0, 1};
     std::array<double, 6> history{};
     bool plane = false;
+    double energy = 0.0;  // J, of a contact with a plane
+    double dent = 1.0;    // of one with a triangle: of its overlap, what its energy suffices for
   };
   std::vector<Friction> friction_;
   BallContacts balls_;

@@ -17,6 +17,7 @@ namespace {
 
 /// Added to the stored presence of a body that its release has not moved yet: the time alone does not tell.
 constexpr int kWaitsForRelease = 3;
+constexpr int kFresh = 6;  // likewise
 
 constexpr double kTouching = 1e-3;  // of the size: bodies that overlap less only touch
 constexpr double kDeepDent = 0.1;   // of the smallest width
@@ -39,6 +40,7 @@ int Particles::add(Body body) {
     body.angular_velocity.setZero();
   }
   peaks_.emplace_back();
+  fresh_.push_back(true);
   momentum_.push_back(body.angular_momentum());
   for (auto* v : {&force_, &torque_, &velocity_, &spin_, &listed_at_}) v->push_back(Vec3(0, 0, 0));
   turned_.push_back(0.0);
@@ -74,6 +76,7 @@ void Particles::remove(int index) {
   turned_.erase(turned_.begin() + index);
   peaks_.erase(peaks_.begin() + index);
   presence_.erase(presence_.begin() + index);
+  fresh_.erase(fresh_.begin() + index);
   launches_.erase(launches_.begin() + index);
   parts_.clear();
   smallest_ = std::numeric_limits<double>::infinity();
@@ -111,6 +114,7 @@ void Particles::place(int index, const Vec3& position, const Quat& orientation, 
   b.angular_velocity = launches_[n].waiting ? Vec3(0, 0, 0) : angular_velocity;
   momentum_[n] = b.angular_momentum();
   parts_.update(index, b, b.velocity, b.angular_velocity);
+  fresh_[n] = true;
   relist_ = true;
 }
 
@@ -244,7 +248,8 @@ std::vector<double> Particles::state() const {
     append(s, force_[n]);
     append(s, torque_[n]);
     s.insert(s.end(), {peaks_[n].overlap, peaks_[n].force, peaks_[n].time});
-    s.push_back(double(presence_[n]) + (launches_[n].waiting ? kWaitsForRelease : 0));
+    s.push_back(static_cast<int>(presence_[n]) + (launches_[n].waiting ? kWaitsForRelease : 0) +
+                (fresh_[n] ? kFresh : 0));
   }
   balls_.save(s);
   solids_.save(s);
@@ -271,7 +276,9 @@ void Particles::restore(std::span<const double> s) {
     peaks_[n].overlap = in.number();
     peaks_[n].force = in.number();
     peaks_[n].time = in.number();
-    const auto there = static_cast<int>(in.whole(0, static_cast<int>(Presence::gone) + kWaitsForRelease));
+    const int stored = in.whole(0, static_cast<int>(Presence::gone) + kWaitsForRelease + kFresh);
+    fresh_[n] = stored >= kFresh;
+    const int there = stored % kFresh;
     presence_[n] = static_cast<Presence>(there % kWaitsForRelease);
     parts_.set_here(static_cast<int>(n), presence_[n] == Presence::here);
     launches_[n].waiting = there >= kWaitsForRelease;

@@ -9,11 +9,11 @@
 namespace ejecta {
 namespace {
 
-constexpr int kBlock = 32;           // pairs, or groups of them, one thread takes at a time
-constexpr double kSameWay = 0.906;   // cosine of 25 degrees: normals of one hollow
-constexpr double kLeastDepth = 0.5;  // energy of a flat contact over force x mean thickness: a face; to
-constexpr double kMostDepth = 0.75;  // that of a corner
-constexpr double kFirstDepth = 2 / 3.0;
+constexpr int kBlock = 32;             // pairs, or groups of them, one thread takes at a time
+constexpr double kSameWay = 0.906;     // cosine of 25 degrees: normals of one hollow
+constexpr double kLeastDepth = 0.5;    // energy of a flat contact over force x mean thickness: a face; to
+constexpr double kLeastFactor = 1e-9;  // nothing, but for ratios of forces and energies
+constexpr double kMostDepth = 0.75;    // that of a corner
 
 Triple<double> triple(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
 Vec3 vec(const Triple<double>& t) { return {t.x, t.y, t.z}; }
@@ -30,6 +30,7 @@ struct Meeting {
   Side a, b;
   Contact<double> contact;
   NormalSpring<double> spring;
+  double least = 0.0, most = 0.0;  // J, that the spring may hold at this dent
 };
 
 bool same_surface(const SolidPair& p, const SolidPair& q) {
@@ -49,7 +50,7 @@ void apply_law(SolidPair& pair, Meeting& m, const PairConstants<double>& p, bool
     c.radius = t.size;
     pair.moment += vec(rolling_moment(c, p, f, triple(spin), dt, h.roll));
   }
-  const double twisting = 0.25 * f.tangential_stiffness * t.patch_radius * t.patch_radius * h.twist * h.twist;
+  const double twisting = 0.5 * h.twist.stiffness * h.twist.angle * h.twist.angle;
   pair.elastic = pair.stored + f.elastic_tangential + twisting;
   pair.wall_power = pair.body_b < 0 ? pair.force.dot(m.b.velocity) : 0.0;
   h.normal = c.normal;
@@ -66,6 +67,9 @@ struct SolidContacts::World {
   const Materials& materials;
   std::span<const Vec3> velocity, spin;
 
+  bool is_away(const SolidPair& p) const {
+    return p.gap > 0 && (parts.row(p.a.index).centre() - p.listed_at).squaredNorm() < p.gap * p.gap;
+  }
   const Surface& surface(const SolidPair& p) const {
     return *walls[static_cast<std::size_t>(p.b.index)].surface;
   }
@@ -102,10 +106,12 @@ struct SolidContacts::World {
   }
 };
 
-void SolidContacts::set_pairs(std::vector<SolidPair>& pairs) {
+void SolidContacts::set_pairs(std::vector<SolidPair>& pairs, std::span<const char> fresh) {
   std::size_t old = 0;
   const auto key = [](const SolidPair& p) { return std::pair(p.a, p.b); };
+  const auto is_fresh = [&](int body) { return body >= 0 && fresh[static_cast<std::size_t>(body)]; };
   for (SolidPair& p : pairs) {
+    if (is_fresh(p.body_a) || is_fresh(p.body_b)) continue;
     while (old < pairs_.size() && key(pairs_[old]) < key(p)) ++old;
     if (old < pairs_.size() && key(pairs_[old]) == key(p)) p.history = pairs_[old].history;
   }
@@ -113,7 +119,8 @@ void SolidContacts::set_pairs(std::vector<SolidPair>& pairs) {
   arrange();
 }
 
-void SolidContacts::hand_over(int ball, int wall, const Vec3& normal, const std::array<double, 6>& friction) {
+void SolidContacts::hand_over(int ball, int wall, const Vec3& normal, const std::array<double, 6>& friction,
+                              double energy) {
   const PartKey a{PartKind::ball, ball}, b{PartKind::wall_triangle, wall};
   const auto found =
       std::lower_bound(pairs_.begin(), pairs_.end(), std::pair(a, b),
@@ -124,6 +131,10 @@ void SolidContacts::hand_over(int ball, int wall, const Vec3& normal, const std:
   h.normal = triple(normal);
   h.slip = {friction[0], friction[1], friction[2]};
   h.roll = {friction[3], friction[4], friction[5]};
+  double stored = 0.0;  // with walls, by this body
+  for (const SolidPair& p : pairs_)
+    if (p.body_a == found->body_a && p.body_b < 0) stored = std::max(stored, p.history.energy);
+  h.energy = stored + energy;
 }
 
 void SolidContacts::arrange() {
@@ -192,58 +203,95 @@ void SolidContacts::choose(const World& world, int begin, int end) {
       if (!(vec(h.normal).dot(p.touch.normal) > kSameWay)) continue;
       p.history.slip = h.slip;
       p.history.roll = h.roll;
+      p.history.energy = h.energy;
+      p.history.power = h.power;
       h = {};
       break;
     }
   }
 }
 
-/// What a flat contact has stored: exactly that of a plane; else the work done on its spring, held between
-/// that of a face and that of a corner, so that nothing adds up in a contact that lasts.
+/// The contacts of two bodies (all walls are one) give back no more than they took. What their springs have
+/// stored is the work that was done on them, by the rule of trapezoids, whose error is (angular frequency x
+/// dt)^2/3; velocities extrapolated to the whole step add half as much again. Where the springs are gradients
+/// of an energy it is what the powers at both ends of the step allow. A spring of force F and thickness t
+/// holds an energy of F t/2 (a face) to 3/4 F t (a corner), or just that of which it is the gradient. Where
+/// the work does not suffice for that, all forces are less by one factor. So a contact that came about
+/// without work, as that of a body that was born in another or slid over an edge, begins without force, and
+/// then is as stiff as any. What is stored beyond the most is lost.
 void SolidContacts::apply_laws(const World& world, int begin, int end, double dt) {
   const auto pair = [&](int n) -> SolidPair& {
     return pairs_[static_cast<std::size_t>(order_[static_cast<std::size_t>(n)])];
   };
   thread_local std::vector<Meeting> meetings;
+  thread_local std::vector<SolidPair*> touching;
   meetings.clear();
+  touching.clear();
+  double stored = 0.0, power = 0.0;               // before
+  double least = 0.0, most = 0.0, parting = 0.0;  // J, J, W
+  double error = 0.0;                             // of the rule
+  bool whole = true;
   for (int n = begin; n < end; ++n) {
     SolidPair& p = pair(n);
+    if (p.away) continue;
+    if (p.history.energy > stored) {
+      stored = p.history.energy;
+      power = p.history.power;
+    }
     p.force.setZero();
     p.moment.setZero();
     p.stored = p.elastic = p.wall_power = 0.0;
     if (p.hidden || p.touch.ghost) p.touch.overlap = 0.0;
-    meetings.emplace_back();
     if (!(p.touch.overlap > 0)) {
       p.history = {};
       p.history.side = p.touch.side;
       continue;
     }
-    Meeting& m = meetings.back() = world.meet(p);
+    touching.push_back(&p);
+    Meeting& m = meetings.emplace_back(world.meet(p));
     const Touch& t = p.touch;
+    const double force = m.spring.secant * t.overlap;
+    m.least = m.most = t.thickness > 0 ? force * t.depth : m.spring.energy;
     if (t.thickness > 0) {
-      const double force = m.spring.secant * t.overlap, most = force * t.thickness;
-      if (t.depth > 0) {
-        m.spring.energy = force * t.depth;
-      } else {
-        ContactHistory& h = p.history;
-        const double power = -force * dot(m.contact.velocity, m.contact.normal);
-        const double energy = h.touched() ? h.energy + 0.5 * dt * (h.power + power) : kFirstDepth * most;
-        m.spring.energy = h.energy = std::clamp(energy, kLeastDepth * most, kMostDepth * most);
-        h.power = power;
+      m.spring.stiffening = 0.0;
+      if (!(t.depth > 0)) {
+        m.least = kLeastDepth * force * t.thickness;
+        m.most = kMostDepth * force * t.thickness;
       }
-      m.spring.sharpness = 0.5 * force * t.overlap / m.spring.energy;
     }
-    p.stored = m.spring.energy;
+    least += m.least;
+    most += m.most;
+    parting += force * dot(m.contact.velocity, m.contact.normal);
+    const double stiffness = t.thickness > 0 ? force / t.thickness : 1.5 * m.spring.secant;
+    const bool gradient = !(t.thickness > 0) || p.b.kind == PartKind::wall_plane;
+    whole = whole && gradient && p.history.touched() && p.history.dent == 1.0;
+    error = std::max(error, stiffness * dt * dt / m.contact.mass);
   }
-  for (int n = begin; n < end; ++n) {
-    SolidPair& p = pair(n);
-    if (!(p.touch.overlap > 0)) continue;
+  if (!(least > 0)) return;
+  // With the factor f: f^2 least = stored now = had - f half.
+  const double slack = dt * (error * std::abs(power) + (whole ? 0.5 * std::abs(power + parting) : 0.0));
+  const double had = std::max(0.0, stored + 0.5 * dt * power + slack), half = 0.5 * dt * parting;
+  const double factor =
+      std::clamp((std::sqrt(half * half + 4 * least * had) - half) / (2 * least), kLeastFactor, 1.0);
+  const double now = std::clamp(had - factor * half, 0.0, most), over_least = now / least;
+  for (std::size_t n = 0; n < touching.size(); ++n) {
+    SolidPair& p = *touching[n];
+    Meeting& m = meetings[n];
+    p.history.dent = factor < 1 ? std::pow(factor, 1.0 / m.spring.sharpness) : 1.0;
+    m.spring.secant *= factor;
+    m.spring.energy =
+        factor < 1 ? factor * factor * m.least : std::clamp(over_least * m.least, m.least, m.most);
+    m.spring.sharpness = 0.5 * m.spring.secant * p.touch.overlap * p.touch.overlap / m.spring.energy;
+    p.stored = m.spring.energy;
+    p.history.energy = now;
+    p.history.power = -factor * parting;
+  }
+  for (std::size_t n = 0; n < touching.size(); ++n) {
+    SolidPair& p = *touching[n];
     double all = 0.0;
-    for (int k = begin; k < end; ++k)
-      all += pair(k).stored * std::max(0.0, pair(k).touch.normal.dot(p.touch.normal));
-    Meeting& m = meetings[static_cast<std::size_t>(n - begin)];
-    m.contact.share = p.stored / all;
-    apply_law(p, m, world.constants(m), world.materials.allow_tension(), dt);
+    for (const SolidPair* q : touching) all += q->stored * std::max(0.0, q->touch.normal.dot(p.touch.normal));
+    meetings[n].contact.share = p.stored / all;
+    apply_law(p, meetings[n], world.constants(meetings[n]), world.materials.allow_tension(), dt);
   }
 }
 
@@ -254,7 +302,10 @@ void SolidContacts::compute(const Parts& parts, std::span<const Body> bodies, st
   for_each_block(static_cast<int>(pairs_.size()), kBlock, [&](int, int begin, int end) {
     for (int n = begin; n < end; ++n) {
       SolidPair& p = pairs_[static_cast<std::size_t>(n)];
-      p.touch = find_touch(p, parts, bodies, walls, domain);
+      const bool away = world.is_away(p);
+      if (away && p.away) continue;
+      p.away = away && p.history == ContactHistory{};
+      p.touch = away ? Touch{} : find_touch(p, parts, bodies, walls, domain);
       p.hidden = false;
     }
   });
@@ -289,13 +340,13 @@ void SolidContacts::save(std::vector<double>& out) const {
     const ContactHistory& h = p.history;
     for (const int v : {p.body_a, p.body_b, h.side, h.face}) out.push_back(v);
     for (const Triple<double>& v : {h.slip, h.roll, h.normal}) out.insert(out.end(), {v.x, v.y, v.z});
-    out.insert(out.end(), {h.twist, h.energy, h.power});
+    out.insert(out.end(), {h.twist.angle, h.twist.stiffness, h.energy, h.power, h.dent});
   }
 }
 
 void SolidContacts::load(StateReader& in, int bodies) {
   constexpr int any = std::numeric_limits<int>::max();
-  pairs_.assign(in.count(24), {});
+  pairs_.assign(in.count(26), {});
   for (SolidPair& p : pairs_) {
     for (PartKey* k : {&p.a, &p.b}) {
       k->kind = static_cast<PartKind>(in.whole(0, static_cast<int>(PartKind::wall_triangle)));
@@ -308,7 +359,7 @@ void SolidContacts::load(StateReader& in, int bodies) {
     h.face = in.whole(-1, any);
     for (Triple<double>* v : {&h.slip, &h.roll, &h.normal})
       for (double* c : {&v->x, &v->y, &v->z}) *c = in.number();
-    for (double* v : {&h.twist, &h.energy, &h.power}) *v = in.number();
+    for (double* v : {&h.twist.angle, &h.twist.stiffness, &h.energy, &h.power, &h.dent}) *v = in.number();
   }
   arrange();
 }

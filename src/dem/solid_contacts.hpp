@@ -41,11 +41,12 @@ struct Touch {
 /// What changes in time along a contact.
 struct ContactHistory {
   Triple<double> slip, roll;  ///< m, rad
-  double twist = 0.0;         ///< rad
-  Triple<double> normal;      ///< at the last step; zero: they did not touch
-  int side = 0, face = -1;    ///< as in Touch
-  double energy = 0.0;        ///< J, that a flat contact has stored, from the work done on its spring
-  double power = 0.0;         ///< W, the rate of that at the last step
+  Twist twist;
+  Triple<double> normal;    ///< at the last step; zero: they did not touch
+  int side = 0, face = -1;  ///< as in Touch
+  double energy = 0.0;  ///< J, that all contacts of the two bodies have stored: work done on their springs
+  double power = 0.0;   ///< W, the rate of that at the last step
+  double dent = 1.0;    ///< of the overlap, what that energy suffices for
   bool operator==(const ContactHistory&) const = default;
   bool touched() const { return dot(normal, normal) > 0; }
 };
@@ -57,7 +58,11 @@ struct SolidPair {
   Vec3 shift{0, 0, 0};          ///< m, from b to the image of it that a meets across a periodic side
   ContactHistory history;
   Touch touch;
-  bool hidden = false;      ///< another contact of the same surface stands for it
+  bool hidden = false;  ///< another contact of the same surface stands for it
+  /// A ball that was listed here was so far away, m; until it has come as far there is nothing to look at.
+  Vec3 listed_at{0, 0, 0};
+  double gap = 0.0;
+  bool away = false;        ///< it has not, and nothing is remembered
   double stored = 0.0;      ///< J, in the normal spring
   Vec3 force{0, 0, 0};      ///< N, on a
   Vec3 moment{0, 0, 0};     ///< N m, on a besides the force's: rolling and twisting
@@ -68,8 +73,8 @@ struct SolidPair {
 class SolidContacts {
  public:
   /// Candidates, sorted by (a, b), in exchange for the old ones; histories of pairs that were there before
-  /// are kept.
-  void set_pairs(std::vector<SolidPair>& pairs);
+  /// are kept but for those of bodies (by index) that were put where they are since.
+  void set_pairs(std::vector<SolidPair>& pairs, std::span<const char> fresh);
   /// `velocity`, `spin`: of the bodies, m/s and rad/s.
   void compute(const Parts& parts, std::span<const Body> bodies, std::span<const Wall> walls,
                const Materials& materials, const Domain& domain, std::span<const Vec3> velocity,
@@ -86,9 +91,10 @@ class SolidContacts {
     }
   }
 
-  /// A ball's friction with a wall (slip and roll, x, y, z each), from where it was a plane to the ball, goes
-  /// to the triangles that it meets now.
-  void hand_over(int ball, int wall, const Vec3& normal, const std::array<double, 6>& friction);
+  /// A ball's friction with a wall (slip and roll, x, y, z each) and what their contact has stored (J), from
+  /// where it was a plane to the ball, goes to the triangles that it meets now.
+  void hand_over(int ball, int wall, const Vec3& normal, const std::array<double, 6>& friction,
+                 double energy);
 
   std::span<const SolidPair> pairs() const { return pairs_; }
   double elastic() const;

@@ -45,6 +45,7 @@ bool Particles::place_is_free(std::size_t n) const {
 void Particles::show(std::size_t n, Presence presence) {
   presence_[n] = presence;
   parts_.set_here(static_cast<int>(n), presence == Presence::here);
+  fresh_[n] = true;
   force_[n].setZero();
   torque_[n].setZero();
   relist_ = true;

@@ -4,10 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "case/copies.hpp"
 #include "case/extent.hpp"
 #include "case/load.hpp"
+#include "case/schema.hpp"
 #include "jet/source.hpp"
 #include "jet/valve.hpp"
 
@@ -22,6 +24,10 @@ constexpr double kJetWidth = 2.0;
 
 std::string ms(double seconds) { return fmt::format("{:.3g} ms", 1e3 * seconds); }
 std::string mm(double metres) { return fmt::format("{:.3g} mm", 1e3 * metres); }
+
+int looks_at(const Case& c) {
+  return std::clamp(static_cast<int>(std::min(c.run.end_time / kLook, 1e9)), kFewestLooks, kMostLooks);
+}
 
 /// Its centre at times 0, dt, ..., end of the run.
 std::vector<Vec3> way_of(const Case& c, const Body& body, const FlightState& start, double dt, int looks) {
@@ -40,6 +46,22 @@ std::vector<Vec3> way_of(const Case& c, const Body& body, const FlightState& sta
 void widen(std::optional<Span>& span, double t) {
   if (!span) span = Span{t, t};
   span->to = t;
+}
+
+/// The face of the box through which a body leaves it first, and when, s; face -1: none.
+struct Leave {
+  int face = -1;
+  double time = 0.0;
+  Vec3 at{0, 0, 0};
+};
+Leave leave_of(const Box& box, std::span<const Vec3> way, double dt) {
+  for (std::size_t k = 1; k < way.size(); ++k)
+    for (int face = 0; face < 6; ++face) {
+      const int d = face / 2;
+      const auto out = [&](const Vec3& x) { return face % 2 ? x[d] > box.high[d] : x[d] < box.low[d]; };
+      if (box.contains(way[k - 1]) && out(way[k])) return {face, static_cast<double>(k) * dt, way[k]};
+    }
+  return {};
 }
 
 /// From the surface of the body at x to where a jet blows, m; below 0: it is in it.
@@ -63,6 +85,18 @@ double beside_jet(const Case& c, const Body& body, const Vec3& x) {
   return least;
 }
 
+/// Whether air flows in at a place on a face of the box; of a face with the jet, only where that blows.
+bool lets_air_in(const Case& c, int face, const Body& body, const Vec3& x) {
+  const BoundarySpec& spec = c.boundary[static_cast<std::size_t>(face)];
+  const auto blows = [&](BoundaryType t) {
+    return t == BoundaryType::velocity || t == BoundaryType::total_pressure ||
+           (t == BoundaryType::jet && beside_jet(c, body, x) <= 0.0);
+  };
+  return blows(spec.type) || std::any_of(spec.patches.begin(), spec.patches.end(), [&](const PatchSpec& p) {
+           return blows(p.type) && (p.centre - x).norm() < p.radius + body.shape.bounding_radius();
+         });
+}
+
 }  // namespace
 
 Company company_of(const Case& c) {
@@ -81,8 +115,7 @@ Company company_of(const Scene& scene) {
 Prospect prospect_of(const Case& c, const Company& company, std::size_t n, const Splitter* plate) {
   const Body& body = company.bodies[n];
   const FlightState& start = company.starts[n];
-  const int looks =
-      std::clamp(static_cast<int>(std::min(c.run.end_time / kLook, 1e9)), kFewestLooks, kMostLooks);
+  const int looks = looks_at(c);
   const double dt = c.run.end_time / looks;
   const std::vector<Vec3> way = way_of(c, body, start, dt, looks);
   const bool flows = c.flow.solver != FlowSolver::none;
@@ -195,6 +228,19 @@ std::vector<Problem> check_prospects(const Case& c, const Company& company, cons
                        spec.name),
            "a path through the [grid]");
       continue;
+    }
+    if (const auto box = c.flow.solver != FlowSolver::none ? grid_box(c) : std::nullopt) {
+      const int looks = looks_at(c);
+      const double dt = c.run.end_time / looks;
+      const Body& body = company.bodies[n];
+      const Leave leave = leave_of(*box, way_of(c, body, company.starts[n], dt, looks), dt);
+      if (leave.face >= 0 && lets_air_in(c, leave.face, body, leave.at))
+        warn(key,
+             fmt::format(
+                 "undisturbed \"{}\" leaves the box at {} through {}, where air flows in: what flows in "
+                 "there knows nothing of it",
+                 spec.name, ms(leave.time), face_names[static_cast<std::size_t>(leave.face)]),
+             "a path that leaves through another face, or an end before that");
     }
     if (!jet || !(spec.on_belt || p.at_plate)) continue;  // one that goes elsewhere need not meet it
     if (!p.over_jet) {

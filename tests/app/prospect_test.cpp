@@ -57,6 +57,12 @@ TEST(Prospects, AMissInPlaceIsToldLikeOneInTime) {
               Contains(HasSubstr("body.0.on_belt: the jet misses \"cube\"")));
 }
 
+TEST(Prospects, AWayOutAgainstTheWindIsTold) {
+  EXPECT_THAT(warnings({"boundary.x_max.type=velocity",
+                        "boundary.x_max.velocity=[\"-1 m/s\", \"0 m/s\", \"0 m/s\"]"}),
+              Contains(HasSubstr("through x_max, where air flows in")));
+}
+
 TEST(Prospects, AnEndBeforeThePlateIsTold) {
   EXPECT_THAT(warnings({"run.end_time=30 ms"}),
               Contains(HasSubstr("run.end_time: the run ends at 30 ms, before any body comes to the plate")));

@@ -102,7 +102,7 @@ TEST(ContactLaw, LanesGiveWhatNumbersGive) {
 
 TEST(ContactLaw, RollingAndTwistingStopAtTheirLimits) {
   D slip, roll;
-  double twist = 0;
+  Twist twist;
   const auto c = contact(1e-5, {0, 0, 0});
   const auto f = contact_force<HertzMindlin>(c, kPair, false, 1e-4, slip);
   D rolling, patch;

@@ -82,7 +82,9 @@ void collide(Particles& p) {
 
 bool finest(const Kind& kind) { return std::string_view(kind.name) == "mesh of 5120"; }
 
+/// The finest mesh on all surfaces at all three: EJECTA_ALL_PAIRS=1.
 TEST(Restitution, OfEveryShapeOnEverySurface) {
+  const bool every = std::getenv("EJECTA_ALL_PAIRS") != nullptr;
   for (const double e : {0.1, 0.5, 0.9}) {
     const Case c = elastic(e);
     const Materials materials(c);
@@ -103,7 +105,7 @@ TEST(Restitution, OfEveryShapeOnEverySurface) {
                                               Vec3(0, 0, -10e-3))));
     for (const Kind& kind : kinds())
       for (const auto& [name, wall] : walls) {
-        if (finest(kind) && (e != 0.5 || (name != "plane" && name != "divided 7"))) continue;
+        if (!every && finest(kind) && (e != 0.5 || (name != "plane" && name != "divided 7"))) continue;
         Particles p(Vec3(0, 0, 0), materials, c.contact);
         p.add(wall);
         Body b = thrown(kind, materials, 0.0, -kSpeed, false);
@@ -115,8 +117,9 @@ TEST(Restitution, OfEveryShapeOnEverySurface) {
   }
 }
 
-/// A corner of three or five edges on an edge, or between four legs, is pushed to the side: no central
-/// impact.
+/// A corner of three or five edges on an edge, or between four legs: no axis in common. As they are thrown
+/// here the impulse leans by 1 to 15 degrees and the bodies part sideways with 0.01 to 0.13 m/s and spins of
+/// 5 to 35 rad/s, so the speed along z says nothing of restitution. Other places and turns were not tried.
 bool lopsided(const Kind& a, const Kind& b) {
   const std::string_view odd = a.name, even = b.name;
   return (odd == "box on corner" || odd == "mesh of 20") &&
