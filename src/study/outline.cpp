@@ -33,6 +33,8 @@ constexpr int kPairs = 5;
 /// A verdict less likely than this contradicts the others: one in a thousand, so that the runs of a map
 /// seldom raise the alarm by chance.
 constexpr double kContradiction = 1e-3;
+/// A verdict less likely than this is judged once more, without the run itself.
+constexpr double kSuspicion = 0.1;
 constexpr double kLeastMargin = 1e-12;  // m: clipping divides by the usual margin
 
 double normal_density(double z) { return std::exp(-0.5 * z * z) / std::sqrt(2.0 * std::numbers::pi); }
@@ -142,6 +144,27 @@ std::vector<ConditionedProcess> explain(std::vector<MapRun> runs, const MapSetti
   const bool two = settings.coarse_cost > 0.0;
   return explain_runs(places, margins, Sizes{usual_margin(runs, frame), settings.most_noise},
                       settings.symmetric, two, count);
+}
+
+/// Probability that a fine run ejects, noise included.
+std::vector<double> chances_of(std::span<const Point2> places, const std::vector<MapRun>& runs,
+                               const MapSettings& settings) {
+  std::vector<double> out(places.size(), 0.0);
+  const auto processes = explain(runs, settings, kProcesses);
+  const Places at = Frame(settings).places(places);
+  for (const ConditionedProcess& p : processes) {
+    const auto f = p.at(at);
+    for (std::size_t n = 0; n < out.size(); ++n) {
+      const auto k = static_cast<Eigen::Index>(n);
+      out[n] += normal_share(f.mean[k] / std::sqrt(f.variance[k] + p.noise())) /
+                static_cast<double>(processes.size());
+    }
+  }
+  return out;
+}
+
+double chance_of_verdict(const MapRun& run, double ejected) {
+  return run.margin > 0.0 ? ejected : 1.0 - ejected;
 }
 
 /// The node farthest from all runs; half as far from the sides will do.
@@ -472,36 +495,31 @@ bool OutlineFinder::is_finished(const Outline& outline) const {
 }
 
 std::vector<double> OutlineFinder::chances(std::span<const Point2> places) const {
-  std::vector<double> out(places.size(), 0.0);
-  const auto processes = explain(runs_, settings_, kProcesses);
-  const Places at = Frame(settings_).places(places);
-  for (const ConditionedProcess& p : processes) {
-    const auto f = p.at(at);
-    for (std::size_t n = 0; n < out.size(); ++n) {
-      const auto k = static_cast<Eigen::Index>(n);
-      out[n] += normal_share(f.mean[k] / std::sqrt(f.variance[k] + p.noise())) /
-                static_cast<double>(processes.size());
-    }
-  }
-  return out;
+  return chances_of(places, runs_, settings_);
 }
 
+/// A run that stands against all others also bends the process that judges it: the judgement is that of the
+/// others.
 std::vector<Contradiction> OutlineFinder::contradictions() const {
   std::vector<MapRun> runs = runs_;
   std::sort(runs.begin(), runs.end(), comes_first);
+  std::vector<double> suspect(runs.size(), 0.0);
   const auto processes = explain(runs, settings_, kProcesses);
-  std::vector<double> chance(runs.size(), 0.0);
   for (const ConditionedProcess& p : processes) {
     const Eigen::ArrayXd z = p.left_out();
-    for (std::size_t n = 0; n < runs.size(); ++n) {
-      const double towards = runs[n].margin > 0.0 ? 1.0 : -1.0;
-      chance[n] +=
-          normal_share(towards * z[static_cast<Eigen::Index>(n)]) / static_cast<double>(processes.size());
-    }
+    for (std::size_t n = 0; n < runs.size(); ++n)
+      suspect[n] += chance_of_verdict(runs[n], normal_share(z[static_cast<Eigen::Index>(n)])) /
+                    static_cast<double>(processes.size());
   }
   std::vector<Contradiction> out;
-  for (std::size_t n = 0; n < runs.size(); ++n)
-    if (chance[n] < kContradiction) out.push_back({runs[n], chance[n]});
+  for (std::size_t n = 0; n < runs.size(); ++n) {
+    if (suspect[n] > kSuspicion || runs.size() < 2) continue;
+    std::vector<MapRun> others = runs;
+    others.erase(others.begin() + static_cast<std::ptrdiff_t>(n));
+    const double ejected = chances_of(std::span(&runs[n].at, 1), others, settings_)[0];
+    if (const double chance = chance_of_verdict(runs[n], ejected); chance < kContradiction)
+      out.push_back({runs[n], chance});
+  }
   return out;
 }
 
