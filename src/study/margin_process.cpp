@@ -27,7 +27,6 @@ constexpr Range kKinked{0.0, 1.0};           // above a half: kinked
 constexpr Range kLogClip{-1.0, 1.0};         // 0.37 to 2.7 times the usual margin
 constexpr Range kScale{0.5, 1.5};            // fine over coarse
 constexpr Range kLogDiscrepancy{-9.0, 0.0};  // 1e-4 to 1 of the variance
-constexpr std::size_t kNoise = 2;            // its place among the parameters
 constexpr int kParameters = 8, kParametersOfOneFidelity = 6;
 constexpr std::array<Range, kParameters> kRanges{kLogLength, kLogLength, kLogNoise, kKinked,
                                                  kLogClip,   kLogClip,   kScale,    kLogDiscrepancy};
@@ -146,12 +145,9 @@ Eigen::ArrayXd ConditionedProcess::left_out() const {
 }
 
 std::vector<ConditionedProcess> explain_runs(const Places& places, const Eigen::VectorXd& margins,
-                                             const Sizes& sizes, bool mirrored, bool two, int count) {
+                                             double usual, bool mirrored, bool two, int count) {
   const int d = two ? kParameters : kParametersOfOneFidelity;
   auto box = kRanges;
-  // Values are of order 1 where margins are of the usual size.
-  double& most_noise = box[kNoise].high;
-  most_noise = std::clamp(2.0 * std::log(sizes.most_noise / sizes.usual), box[kNoise].low + 1.0, most_noise);
   std::array<Vector, kPoints> tried{};
   std::array<double, kPoints> weight{};
   for (int round = 0; round < kRounds; ++round) {
@@ -160,8 +156,7 @@ std::vector<ConditionedProcess> explain_runs(const Places& places, const Eigen::
       for (std::size_t c = 0; c < v.size(); ++c) v[c] = box[c].low + v[c] * (box[c].high - box[c].low);
       const auto at = static_cast<std::size_t>(n);
       tried[at] = v;
-      weight[at] =
-          ConditionedProcess(parameters_of(v, sizes.usual, two), mirrored, places, margins).log_evidence();
+      weight[at] = ConditionedProcess(parameters_of(v, usual, two), mirrored, places, margins).log_evidence();
     });
     const double best = *std::max_element(weight.begin(), weight.end());
     double sum = 0.0;
@@ -186,7 +181,7 @@ std::vector<ConditionedProcess> explain_runs(const Places& places, const Eigen::
     passed += weight[n];
     while (static_cast<int>(processes.size()) < count &&
            passed * count > static_cast<double>(processes.size()) + 0.5)
-      processes.emplace_back(parameters_of(tried[n], sizes.usual, two), mirrored, places, margins);
+      processes.emplace_back(parameters_of(tried[n], usual, two), mirrored, places, margins);
   }
   return processes;
 }

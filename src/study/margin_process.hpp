@@ -92,16 +92,10 @@ class ConditionedProcess {
   double variance_ = 0.0, log_evidence_ = 0.0;
 };
 
-/// What margins are like, m.
-struct Sizes {
-  double usual = 1.0;       ///< of an ordinary one
-  double most_noise = 1.0;  ///< standard deviation of what two runs at nearly the same place may differ by
-};
-
 /// The processes that explain the runs, each as often as its evidence weighs: there are too few runs to rely
 /// on the best one alone. Points of a lattice in the box of all parameters are weighted, and the next lattice
-/// fills the box around what weighs. `two` fidelities are told apart.
+/// fills the box around what weighs. `usual`: size of an ordinary margin, m; `two` fidelities are told apart.
 std::vector<ConditionedProcess> explain_runs(const Places& places, const Eigen::VectorXd& margins,
-                                             const Sizes& sizes, bool mirrored, bool two, int count);
+                                             double usual, bool mirrored, bool two, int count);
 
 }  // namespace ejecta

@@ -142,8 +142,7 @@ std::vector<ConditionedProcess> explain(std::vector<MapRun> runs, const MapSetti
   for (std::size_t n = 0; n < runs.size(); ++n)
     places.fine[static_cast<Eigen::Index>(n)] = runs[n].fidelity == Fidelity::fine ? 1.0 : 0.0;
   const bool two = settings.coarse_cost > 0.0;
-  return explain_runs(places, margins, Sizes{usual_margin(runs, frame), settings.most_noise},
-                      settings.symmetric, two, count);
+  return explain_runs(places, margins, usual_margin(runs, frame), settings.symmetric, two, count);
 }
 
 /// Probability that a fine run ejects, noise included.

@@ -31,7 +31,6 @@ struct MapSettings {
   int first_runs = 10;       ///< spread evenly before the boundary is looked for
   int max_runs = 35;         ///< of both fidelities
   int max_fine = 15;         ///< where there are coarse runs
-  double most_noise = 2e-3;  ///< m, standard deviation: what a margin may change by chance, ripples included
   double area_error = 0.02;  ///< of the area: the map is finished
   std::uint64_t seed = 1;    ///< of the draws behind the errors
 };
