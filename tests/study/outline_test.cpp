@@ -85,8 +85,9 @@ std::vector<Kind> kinds() {
   };
 }
 
-/// 1 mm of noise on a margin of slope 1 moves the edge by 1 mm, and 35 runs then leave 2 to 3.5 % of this area;
-/// the disturbed kinds have slopes of about 2. Noise still misses 2 % (docs/theory/maps.md): it is held to 4 %.
+/// 1 mm of noise on a margin of slope 1 moves the edge by 1 mm, and 35 runs then leave 2 to 3.5 % of this
+/// area; the disturbed kinds have slopes of about 2. Noise still misses 2 % (docs/theory/maps.md): it is held
+/// to 4 %.
 TEST(Outline, AreaOfEveryKindWithinTwoPercentIn35Runs) {
   for (const Kind& kind : kinds()) {
     const Outline o = mapped(half_plane(), kind.margin).outline();
