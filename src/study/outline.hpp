@@ -28,7 +28,7 @@ struct MapSettings {
   Window window;
   bool symmetric = false;    ///< the margin is even in y: runs only at y >= 0, y_low is ignored
   double coarse_cost = 0.0;  ///< of a coarse run over that of a fine one; 0: there are only fine runs
-  int first_runs = 10;       ///< spread evenly before the boundary is looked for
+  int first_runs = 12;       ///< spread evenly before the boundary is looked for
   int max_runs = 35;         ///< of both fidelities
   int max_fine = 15;         ///< where there are coarse runs
   double area_error = 0.02;  ///< of the area: the map is finished
