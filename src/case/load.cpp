@@ -182,9 +182,9 @@ Case with_absolute_files(Case c) {
 
 std::vector<std::string> files_of(const Case& c) {
   std::vector<std::string> files;
-  for_each_file(c, [&](const std::string& file) {
-    if (!file.empty())
-      files.push_back(std::filesystem::absolute(beside_case(c, file)).lexically_normal().string());
+  const Case absolute = with_absolute_files(c);
+  for_each_file(absolute, [&](const std::string& file) {
+    if (!file.empty()) files.push_back(file);
   });
   std::sort(files.begin(), files.end());
   files.erase(std::unique(files.begin(), files.end()), files.end());

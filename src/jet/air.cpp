@@ -26,8 +26,7 @@ class CompressibleAir : public JetAir {
 
   double stable_dt(double) override { return solver_->stable_dt(case_.run.courant); }
   void advance(double time, double dt) override {
-    godunov::drive(*solver_, inlets_, drive_.supply(time + 0.5 * dt),
-                   case_.flow.turbulence == TurbulenceModel::k_omega_sst);
+    godunov::drive(*solver_, inlets_, drive_.supply(time + 0.5 * dt));
     if (formulas_.vary()) formulas_.apply(time + 0.5 * dt, *solver_);
     solver_->advance(dt);
   }

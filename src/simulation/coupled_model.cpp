@@ -241,8 +241,6 @@ Vec3 CoupledModel::mean_torque(std::size_t b) const {
   return averaged_ > 0.0 ? Vec3(torque_sum_[b] / averaged_) : loads_[b].torque;
 }
 
-std::vector<double> CoupledModel::events() const { return flow_ ? flow_->events() : std::vector<double>{}; }
-
 void CoupledModel::require_finite(double time) const {
   Vec3 where{0, 0, 0};
   if (!flow_ || !air_ || flow_->finite(&where)) return;

@@ -58,7 +58,8 @@ class CoupledModel {
   bool air() const { return air_; }
   /// The case's own end ("verdict", "rest") has come.
   bool finished() const;
-  std::vector<double> events() const;
+  /// Times at which what enters the box has kinks, s.
+  const std::vector<double>& events() const { return inflow_.events; }
   /// Throws DivergedError with the place when the flow is no longer finite.
   void require_finite(double time) const;
 

@@ -324,6 +324,16 @@ struct Jet : Bodies {
   void run(int steps) {
     for (int n = 0; n < steps; ++n) step(std::min(flow.stable_dt(0.9), 2e-5));
   }
+  /// Largest component of velocity, m/s; knows nothing of what is no number.
+  double fastest() const {
+    double most = 0.0;
+    for (int c = 0; c < 3; ++c)
+      for (int k = 0; k < grid.nz(); ++k)
+        for (int j = 0; j < grid.ny(); ++j)
+          for (int i = 0; i < grid.nx(); ++i)
+            most = std::max(most, std::abs(double(flow.velocity_field(c)(i, j, k))));
+    return most;
+  }
 };
 
 using Scene = std::vector<Body> (*)();
@@ -367,13 +377,7 @@ TEST(BodiesInLiquid, BodiesInContactKeepMomentumAsOneDoes) {
     EXPECT_LT(jet.lost(start), (kSingle ? 1e-4 : 1e-8) * given);
     EXPECT_LT(jet.flow.largest_divergence(jet.mask), 2e-3);
     EXPECT_TRUE(jet.flow.finite());
-    double fastest = 0.0;
-    for (int c = 0; c < 3; ++c)
-      for (int k = 0; k < jet.grid.nz(); ++k)
-        for (int j = 0; j < jet.grid.ny(); ++j)
-          for (int i = 0; i < jet.grid.nx(); ++i)
-            fastest = std::max(fastest, std::abs(double(jet.flow.velocity_field(c)(i, j, k))));
-    EXPECT_LT(fastest, 130.0) << "nothing is much faster than the jet";
+    EXPECT_LT(jet.fastest(), 130.0) << "nothing is much faster than the jet";
     for (const Load& load : jet.loads) EXPECT_LT(load.force.norm(), kDensity * 1e4 * 49e-6 * 4);
   }
 }
@@ -403,13 +407,8 @@ TEST(BodiesInLiquid, HeapsOfRocksDriveTheAirNoFasterThanTheJet) {
     Jet jet(random_heap(seed));
     for (int n = 0; n < 60; ++n) {
       jet.run(1);
-      double fastest = 0.0;
-      for (int c = 0; c < 3; ++c)
-        for (int k = 0; k < jet.grid.nz(); ++k)
-          for (int j = 0; j < jet.grid.ny(); ++j)
-            for (int i = 0; i < jet.grid.nx(); ++i)
-              fastest = std::max(fastest, std::abs(double(jet.flow.velocity_field(c)(i, j, k))));
-      ASSERT_LT(fastest, 200.0) << "heap " << seed << ", step " << n;
+      ASSERT_TRUE(jet.flow.finite()) << "heap " << seed << ", step " << n;
+      ASSERT_LT(jet.fastest(), 200.0) << "heap " << seed << ", step " << n;
     }
   }
 }

@@ -147,7 +147,6 @@ class CompressibleModel : public FlowModel {
     return {{"flow.godunov", "U = U - dt div F(U), HLLC on MUSCL states, two stages (Eqs 1-3 with energy)",
              seconds_, calls_}};
   }
-  std::vector<double> events() const override { return inflow_.events; }
   std::vector<Field*> state_fields() override { return solver_->state(); }
   std::vector<double> state_numbers() const override {
     const BoundaryLedger& l = solver_->ledger();
@@ -197,8 +196,7 @@ class CompressibleModel : public FlowModel {
 
  private:
   void set_boundaries(double time) {
-    if (inflow_.supply)
-      drive(*solver_, inlets_, inflow_.supply(time), case_.flow.turbulence == TurbulenceModel::k_omega_sst);
+    if (inflow_.supply) drive(*solver_, inlets_, inflow_.supply(time));
     if (inflow_.at) let_in(time);
     if (formulas_.vary()) formulas_.apply(time, *solver_);
   }

@@ -47,8 +47,6 @@ class FlowModel {
   virtual std::vector<Figure> report() const = 0;
   /// Wall time of every operator so far.
   virtual std::vector<OperatorTime> operators() const = 0;
-  /// Times at which boundary states have kinks, s.
-  virtual std::vector<double> events() const = 0;
   /// Everything a resume needs.
   virtual std::vector<Field*> state_fields() = 0;
   virtual std::vector<double> state_numbers() const = 0;

@@ -179,7 +179,8 @@ Options options_from_case(const Case& c) {
   return o;
 }
 
-void drive(GasFlow& flow, const std::vector<DrivenInlet>& inlets, const Supply& supply, bool omega) {
+void drive(GasFlow& flow, const std::vector<DrivenInlet>& inlets, const Supply& supply) {
+  const bool omega = flow.options().turbulence == TurbulenceModel::k_omega_sst;
   for (const DrivenInlet& inlet : inlets) {
     Condition& condition = flow.boundaries().condition(inlet.handle);
     condition.total_pressure = supply.total_pressure;

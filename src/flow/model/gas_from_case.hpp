@@ -46,8 +46,8 @@ struct DrivenInlet {
   double radius = 0.0;  ///< m
 };
 
-/// Opens the orifices to their supply at this time; `omega`: the gas carries omega, not epsilon.
-void drive(GasFlow& flow, const std::vector<DrivenInlet>& inlets, const Supply& supply, bool omega);
+/// Opens the orifices to their supply at this time.
+void drive(GasFlow& flow, const std::vector<DrivenInlet>& inlets, const Supply& supply);
 
 /// The faces whose gas is a formula in place or time, their patches apart. A whole face of type "jet" is not
 /// among them.

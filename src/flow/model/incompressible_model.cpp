@@ -125,7 +125,6 @@ class IncompressibleModel : public FlowModel {
         {"flow.turbulence", "k and epsilon or omega: transport, sources, nu_t", t.turbulence, 0},
         {"flow.ledger", "momentum and mass through the boundaries", t.ledger, 0}};
   }
-  std::vector<double> events() const override { return inflow_.events; }
 
   std::vector<Field*> state_fields() override { return flow_->state(); }
   std::vector<double> state_numbers() const override {
