@@ -58,11 +58,13 @@ class Slice:
 
 
 class Frame:
-    """One moment of the replay: time (s), poses (one row x y z qw qx qy qz a body), slices."""
+    """One moment of the replay: time (s), poses (one row x y z qw qx qy qz a body; NaN before it has come and after it has
+    gone), slices."""
 
     def __init__(self, header, line):
         self.time = line["time"]
-        self.poses = numpy.array(line["bodies"]).reshape(-1, 7)
+        absent = [numpy.nan] * 7
+        self.poses = numpy.array([absent if pose is None else pose for pose in line["bodies"]]).reshape(-1, 7)
         self.slices = [Slice(header["rasters"][s["raster"]], s) for s in line["slices"]]
 
 

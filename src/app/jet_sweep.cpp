@@ -1,5 +1,3 @@
-#include "app/jet_sweep.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -7,7 +5,7 @@
 #include <iostream>
 
 #include "app/exit_code.hpp"
-#include "app/jet_figures.hpp"
+#include "app/simulation.hpp"
 #include "base/error.hpp"
 #include "base/parallel.hpp"
 #include "base/stopwatch.hpp"
@@ -15,6 +13,7 @@
 #include "jet/settled.hpp"
 #include "output/report.hpp"
 #include "output/run_directory.hpp"
+#include "simulation/jet_figures.hpp"
 
 namespace ejecta {
 namespace {
@@ -49,15 +48,6 @@ output::Figure velocities_figure(const std::vector<double>& gauge, const ordered
 
 }  // namespace
 
-double where_square_reaches(const std::vector<double>& x, const std::vector<double>& y, double wanted) {
-  const auto above = std::lower_bound(y.begin(), y.end(), wanted);
-  if (above == y.begin()) return x.front() * std::sqrt(wanted / y.front());
-  if (above == y.end()) return x.back() * std::sqrt(wanted / y.back());
-  const auto n = static_cast<std::size_t>(above - y.begin());
-  const double share = (wanted - y[n - 1]) / (y[n] - y[n - 1]);
-  return std::sqrt((1.0 - share) * x[n - 1] * x[n - 1] + share * x[n] * x[n]);
-}
-
 int sweep_jet(const Case& original, const RunOptions& options) {
   Case c = original;
   std::sort(c.jet.sweep_pressures.begin(), c.jet.sweep_pressures.end());
@@ -80,12 +70,12 @@ int sweep_jet(const Case& original, const RunOptions& options) {
     if (!options.quiet) std::cerr << line << std::endl;
   };
   const double height = c.launch.stand_off, start = wall_seconds();
-  output::Figure lines = centreline_figure("Total pressure on the axis (paper, Figure 7)");
+  output::Figure lines = centreline_figure("Total pressure on the axis");
 
   ordered_json slow = ordered_json::array(), fast = ordered_json::array();
   std::vector<double> momenta, totals, gauges;
   for (const double velocity : c.jet.sweep_velocities) {
-    const SettledJet jet = settled_jet(incompressible_jet(c, velocity), height, note);
+    const SettledJet jet = *settled_jet(incompressible_jet(c, velocity), height, note);
     momenta.push_back(jet.momentum_at_stand_off);
     totals.push_back(jet.at_stand_off.total_gauge);
     slow.push_back(entry(jet));
@@ -96,7 +86,7 @@ int sweep_jet(const Case& original, const RunOptions& options) {
   for (const double supply : c.jet.sweep_pressures) {
     Case at = c;
     at.valve.supply_pressure = supply;
-    const SettledJet jet = settled_jet(at, height, note);
+    const SettledJet jet = *settled_jet(at, height, note);
     gauges.push_back(supply - c.environment.pressure);
     ordered_json e = entry(jet);
     e["supply_gauge_Pa"] = gauges.back();
@@ -117,7 +107,7 @@ int sweep_jet(const Case& original, const RunOptions& options) {
 
   output::Figures figures;
   if (!fast.empty()) figures.add(velocities_figure(gauges, fast));
-  figures.add(beyond(lines, 1e3 * kFarView, "Total pressure on the axis, far part"));
+  figures.add(beyond(lines, 1e3 * far_field_from(c), "Total pressure on the axis, far field"));
   figures.add(std::move(lines));
   figures.write(directory.figures());
   const ordered_json result{{"title", c.run.title},

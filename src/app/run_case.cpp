@@ -2,6 +2,7 @@
 
 #include <cstdio>
 #include <filesystem>
+#include <functional>
 #include <iostream>
 #include <optional>
 
@@ -10,13 +11,20 @@
 #include "app/simulation.hpp"
 #include "base/error.hpp"
 #include "base/parallel.hpp"
+#include "case/extent.hpp"
+#include "jet/computed.hpp"
+#include "jet/inlet.hpp"
+#include "jet/store.hpp"
 #include "output/progress.hpp"
 #include "output/run_directory.hpp"
 #include "output/verdict.hpp"
+#include "simulation/coupled_model.hpp"
 #include "simulation/run.hpp"
 
 namespace ejecta {
 namespace {
+
+using Runner = std::function<Result(const Case&, const Context&)>;
 
 void print_note(const std::string& line) { fmt::print(stderr, "{}\n", line); }
 
@@ -27,18 +35,17 @@ void print_verdict(const Result& result, const std::filesystem::path& run) {
     fmt::print("report:  {}\n", (run / "report.html").string());
 }
 
-void print_step(const CoupledModel& model) {
-  fmt::print("One step of {}:\n", model.config().path);
+void print_step(const Case& c, const Model& model) {
+  fmt::print("One step of {}:\n", c.path);
   int n = 0;
   for (const auto& op : model.operator_times()) fmt::print("  {:2}. {:<26} {}\n", ++n, op.name, op.equation);
 }
 
 std::string start_line(const Case& c, const Moment& m, const std::filesystem::path& directory) {
-  const auto bodies = m.model.particles().bodies().size();
-  return fmt::format("{}: {} cells, {} bod{}, {} thread{} -> {}{}", c.path,
-                     m.model.flow() ? m.model.grid().cells() : 0, bodies, bodies == 1 ? "y" : "ies",
-                     thread_count(), thread_count() == 1 ? "" : "s", directory.string(),
-                     m.step > 0 ? fmt::format(", from t = {:.3f} ms", 1e3 * m.time) : "");
+  const auto bodies = m.model.bodies();
+  return fmt::format("{}: {} cells, {} bod{}, {} thread{} -> {}{}", c.path, m.model.cells(), bodies,
+                     bodies == 1 ? "y" : "ies", thread_count(), thread_count() == 1 ? "" : "s",
+                     directory.string(), m.step > 0 ? fmt::format(", from t = {:.3f} ms", 1e3 * m.time) : "");
 }
 
 /// How far a run is, on the terminal and in its progress.json.
@@ -48,8 +55,7 @@ class ProgressOfRun {
       : case_(c), options_(options), directory_(std::move(directory)) {}
 
   void observe(const Moment& m) {
-    last_ = {m.time, m.busy_until,      m.step,
-             m.dt,   m.model.courant(), m.model.air() ? m.model.grid().cells() : 0};
+    last_ = {m.time, m.busy_until, m.step, m.dt, m.model.courant(), m.model.cells()};
     if (progress_) return progress_->update(last_);
     auto p = output::progress_options_of_terminal(options_.quiet     ? output::Verbosity::quiet
                                                   : options_.verbose ? output::Verbosity::verbose
@@ -92,26 +98,24 @@ int exit_code_of(RunEnd end) {
   return exit_stopped;
 }
 
-int run_into(const std::filesystem::path& directory, const Case& c, RunOptions options) {
-  const std::string typed = command_line_of("run", c, options);
-  options.out = directory.string();
-  const auto command = [&c](const RunOptions& o) { return command_line_of("run", c, o); };
+/// The run with its progress on the terminal, until its end or a signal.
+Result watched_run(const Case& c, const RunOptions& options, const RunFiles& files, const Runner& runner,
+                   ProgressOfRun& progress) {
   std::optional<SignalWatch> signals;  // until the first step a signal ends the program at once
-  ProgressOfRun progress(c, options, directory);
-  Context context{
-      .files = RunFiles{directory, options.force, options.resume, typed, command(options), options.overrides},
-      .threads = options.threads,
-      .observe =
-          [&](const Moment& m) {
-            if (!signals) signals.emplace();
-            progress.observe(m);
-          },
-      .stop = [&] { return signals->stop_requested(); },
-      .keep = [&] { return signals->take_checkpoint_request(); },
-      .note = print_note};
-  Result result;
+  const Context context{.files = files,
+                        .threads = options.threads,
+                        .observe =
+                            [&](const Moment& m) {
+                              if (!signals) signals.emplace();
+                              progress.observe(m);
+                            },
+                        .stop = [&] { return signals->stop_requested(); },
+                        .keep = [&] { return signals->take_checkpoint_request(); },
+                        .note = options.quiet ? Note{} : Note(print_note)};
   try {
-    result = run(c, context);
+    const Result result = runner(c, context);
+    progress.finish(result.end == RunEnd::stopped ? "stopped" : "done");
+    return result;
   } catch (const DivergedError&) {
     progress.give_up("diverged");
     throw;
@@ -119,31 +123,10 @@ int run_into(const std::filesystem::path& directory, const Case& c, RunOptions o
     progress.give_up("failed");
     throw;
   }
-  progress.finish(result.end == RunEnd::stopped ? "stopped" : "done");
-  if (result.end == RunEnd::stopped) {
-    progress.note(fmt::format("continue with\n  {} --resume", command(options)));
-    return exit_stopped;
-  }
-  if (!options.quiet) {
-    if (options.verbose || c.flow.solver != FlowSolver::none)
-      fmt::print("{}\n", output::operator_table(result.operators, result.wall_time));
-    print_verdict(result, directory);
-  }
-  if (result.later_end) {
-    options.overrides.push_back(fmt::format("run.end_time={:.0f} ms", 1e3 * *result.later_end));
-    progress.note(fmt::format("go on with\n  {} --resume", command(options)));
-  }
-  return exit_code_of(result.end);
 }
 
-}  // namespace
-
-int run_case(const Case& c, const RunOptions& options) {
-  if (options.dry_run) {
-    const CoupledModel model(c, print_note);
-    if (!options.quiet) print_step(model);
-    return exit_done;
-  }
+/// `command`: that the user gave, "run" or "jet".
+int run_into_directory(const std::string& command, const Case& c, RunOptions options, const Runner& runner) {
   const auto directory =
       options.out.empty() ? output::RunDirectory::default_path(c.path) : std::filesystem::path(options.out);
   if (options.resume)
@@ -154,12 +137,63 @@ int run_case(const Case& c, const RunOptions& options) {
       }
       return exit_code_of(result->end);
     }
-  return run_into(directory, c, options);
+  const std::string typed = command_line_of(command, c, options);
+  options.out = directory.string();
+  const auto here = [&] { return command_line_of(command, c, options); };
+  ProgressOfRun progress(c, options, directory);
+  const RunFiles files{directory, options.force, options.resume, typed, here(), options.overrides};
+  const Result result = watched_run(c, options, files, runner, progress);
+  if (result.end == RunEnd::stopped) {
+    progress.note(fmt::format("continue with\n  {} --resume", here()));
+    return exit_stopped;
+  }
+  if (!options.quiet) {
+    if (options.verbose || c.flow.solver != FlowSolver::none)
+      fmt::print("{}\n", output::operator_table(result.operators, result.wall_time));
+    print_verdict(result, directory);
+  }
+  if (result.later_end) {
+    options.overrides.push_back(fmt::format("run.end_time={:.0f} ms", 1e3 * *result.later_end));
+    progress.note(fmt::format("go on with\n  {} --resume", here()));
+  }
+  return exit_code_of(result.end);
 }
 
-int plan_case(const Case& c) {
-  print_step(CoupledModel(c, print_note));
+}  // namespace
+
+int plan_case(const Case& c, bool quiet) {
+  const CoupledModel model(c, planned_inflow(c));
+  if (!quiet) print_step(c, model);
   return exit_done;
+}
+
+int run_case(const Case& c, const RunOptions& options) {
+  if (options.dry_run) return plan_case(c, options.quiet);
+  return run_into_directory("run", c, options, run);
+}
+
+std::optional<nlohmann::ordered_json> result_of(const Case& c, const std::filesystem::path& directory,
+                                                int threads) {
+  const RunOptions options{.out = directory.string(), .threads = threads, .force = true, .quiet = true};
+  const std::string command = command_line_of("run", c, options);
+  ProgressOfRun progress(c, options, directory);
+  const Runner any = [](const Case& of, const Context& context) {
+    return is_jet_case(of) ? run_jet(of, kBoxHeight, context) : run(of, context);
+  };
+  const Result r = watched_run(c, options, {directory, true, false, command, command}, any, progress);
+  if (r.end == RunEnd::stopped) return std::nullopt;
+  return r.quantities;
+}
+
+int jet_case(const Case& c, const RunOptions& options) {
+  // A box that is fed with a computed jet stands for the case that computes it.
+  const bool box = c.flow.solver != FlowSolver::compressible && !c.jet.source_case.empty();
+  const Case jet = box ? computed_jet_case(c) : c;
+  const double kept_at = box ? jet_height(c) : kBoxHeight;
+  if (options.sweep) return sweep_jet(jet, options);
+  return run_into_directory("jet", jet, options, [kept_at](const Case& of, const Context& context) {
+    return run_jet(of, kept_at, context);
+  });
 }
 
 }  // namespace ejecta

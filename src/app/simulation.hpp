@@ -1,4 +1,7 @@
 #pragma once
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -28,10 +31,18 @@ std::string command_line_of(const std::string& command, const Case& c, const Run
 
 /// Runs a case into its run directory. Returns an ExitCode.
 int run_case(const Case& c, const RunOptions& options);
-/// Prints the operators of a step with their equations. Returns an ExitCode.
-int plan_case(const Case& c);
+/// Prints the operators of a step with their equations; computes nothing. Returns an ExitCode.
+int plan_case(const Case& c, bool quiet = false);
+/// Runs a case, or computes the jet where it is one of those, without a word: its result.json. Nothing where
+/// it was stopped.
+std::optional<nlohmann::ordered_json> result_of(const Case& c, const std::filesystem::path& directory,
+                                                int threads);
 /// Computes only the jet of a case and stores it. Returns an ExitCode.
 int jet_case(const Case& c, const RunOptions& options);
+/// `ejecta jet CASE --sweep`: settled compressible jets of jet.sweep_pressures and incompressible ones of
+/// jet.sweep_velocities, and for every pressure the velocity at which the incompressible jet carries the same
+/// momentum, and reads the same total pressure, at the stand-off. Returns an ExitCode.
+int sweep_jet(const Case& c, const RunOptions& options);
 /// Measures cell-steps per second on the standard case. Returns an ExitCode.
 int bench(const BenchOptions& options);
 

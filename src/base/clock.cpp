@@ -64,16 +64,27 @@ double Clock::land_on_events(double dt) const {
   return steps * (1.0 - kSnap) > kAhead ? dt : left / parts(steps);
 }
 
-void Clock::tick(double dt) {
-  const double event = next_event();
-  const double t = time_ + dt;
-  time_ = std::abs(event - t) <= kSnap * dt ? event : t;
-  ++step_;
+Step Clock::next(double dt) const {
+  dt = land_on_events(dt);
+  const double event = next_event(), to = time_ + dt;
+  return {time_, dt, std::abs(event - to) <= kSnap * dt ? event : to};
 }
 
-void Clock::restore(double time, std::int64_t step) {
+void Clock::tick(const Step& step) {
+  time_ = step.to;
+  ++steps_;
+}
+
+bool Schedule::due(double time) const {
+  if (interval_ < 0.0) return false;
+  const double next =
+      interval_ > 0.0 ? (std::floor(last_ / interval_ * (1.0 + 1e-9)) + 1.0) * interval_ : last_;
+  return time >= next * (1.0 - 1e-9);
+}
+
+void Clock::restore(double time, std::int64_t steps) {
   time_ = time;
-  step_ = step;
+  steps_ = steps;
 }
 
 }  // namespace ejecta

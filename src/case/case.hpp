@@ -154,7 +154,7 @@ struct JetSpec {
   double inlet_velocity = 0.0;     ///< m/s for "velocity-inlet"; 0: the momentum-equivalent velocity
   double turbulence_intensity = 0.05;
   std::string source_case;  ///< for "computed": the jet case
-  /// `ejecta jet` also computes the incompressible jet of the momentum-equivalent velocity (paper, Figure 7)
+  /// `ejecta jet` also computes the incompressible jet of the momentum-equivalent velocity
   bool compare_incompressible = false;
   double far_field_from = 0.0;           ///< m from the orifice: B and S are fitted beyond; 0: 25 diameters
   std::vector<double> sweep_pressures;   ///< Pa absolute, supplies of `ejecta jet --sweep`, compressible

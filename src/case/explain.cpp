@@ -10,6 +10,7 @@
 #include "base/error.hpp"
 #include "base/text.hpp"
 #include "case/documented.hpp"
+#include "case/extends.hpp"
 
 namespace ejecta {
 namespace {
@@ -105,6 +106,9 @@ std::string explain(const std::string& topic) {
   const std::vector<Section> all = documented_sections(c);
   if (topic.empty()) return tree(all);
   const std::string wanted = plain_topic(topic);
+  if (wanted == "extends")
+    return fmt::format("extends\n  {}.\n\n  example   extends = \"base.toml\", before the first section\n",
+                       kExtendsHelp);
   std::string found;
   std::vector<std::string> known;
   for (const Section& s : all) {
@@ -137,7 +141,10 @@ std::string reference_page() {
       "bare. Where a formula\n"
       "is allowed, a text that begins with `=` is one: `\"= 3 * step(t - 1e-3)\"`, in x, y, z (m) and t (s), "
       "with the result in\n"
-      "SI units. Files are relative to the folder of the case.\n";
+      "SI units. Files are relative to the folder of the case that names them.\n\n"
+      "`extends = \"base.toml\"`, before the first section: ";
+  text += kExtendsHelp;
+  text += ".\n";
   for (const Section& s : documented_sections(c)) {
     text += fmt::format(
         "\n## `{}`\n\n{}.{}\n\n| key | takes | default | meaning | source |\n|---|---|---|---|---|\n",

@@ -14,7 +14,7 @@
 namespace ejecta {
 namespace {
 
-constexpr int max_stack = 32, max_nesting = 200;  // deeper formulas are refused when they are compiled
+constexpr int kMaxStack = 32, kMaxNesting = 200;  // deeper formulas are refused when they are compiled
 
 double truth(bool b) { return b ? 1.0 : 0.0; }
 
@@ -109,14 +109,14 @@ class ExpressionCompiler {
 
   void emit(const Expression::Instruction& i) {
     depth_ += i.kind <= Kind::t ? 1 : i.kind == Kind::one ? 0 : i.kind == Kind::two ? -1 : -2;
-    if (depth_ > max_stack) fail("formula too deeply nested");
+    if (depth_ > kMaxStack) fail("formula too deeply nested");
     out_.program_.push_back(i);
   }
   void emit(Expression::Function1 f) { emit({.kind = Kind::one, .one = f}); }
   void emit(Expression::Function2 f) { emit({.kind = Kind::two, .two = f}); }
 
   void enter() {
-    if (++nesting_ > max_nesting) fail("formula too deeply nested");
+    if (++nesting_ > kMaxNesting) fail("formula too deeply nested");
   }
 
   void choice() {
@@ -235,7 +235,7 @@ class ExpressionCompiler {
 Expression::Expression(const std::string& text) { ExpressionCompiler(text, *this).compile(); }
 
 double Expression::operator()(double x, double y, double z, double t) const {
-  std::array<double, max_stack + 1> stack{};  // an empty program returns 0
+  std::array<double, kMaxStack + 1> stack{};  // an empty program returns 0
   int top = -1;
   for (const Instruction& i : program_) {
     switch (i.kind) {

@@ -6,6 +6,7 @@
 
 #include "case/documented.hpp"
 #include "case/explain.hpp"
+#include "case/extends.hpp"
 #include "case/schema.hpp"
 
 namespace ejecta {
@@ -104,6 +105,7 @@ std::string json_schema() {
             {"type", "object"},
             {"additionalProperties", false},
             {"properties", Json::object()}};
+  properties(root)["extends"] = {{"type", "string"}, {"description", kExtendsHelp}};
   for (const Section& s : sections(c)) {
     Json& object = place(root, s.name);
     object["description"] = s.help;

@@ -69,6 +69,7 @@ struct Key {
   bool required = false;
   std::string example{};  ///< a value that works, as TOML; empty: made from the default or the dimension
   bool decisive = false;  ///< its default decides the result: an assumption until the user sets it
+  bool file = false;      ///< names a file, relative to the one that says so
 };
 
 inline Key decisive(Key key) {

@@ -4,90 +4,25 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <memory>
 #include <set>
 #include <utility>
 
 #include "base/error.hpp"
+#include "case/case_text.hpp"
+#include "case/extends.hpp"
 #include "case/extent.hpp"
 #include "case/findings.hpp"
 #include "case/node_path.hpp"
 #include "case/override.hpp"
-#include "case/problem.hpp"
 #include "case/reader.hpp"
 #include "case/sense.hpp"
-#include "case/toml.hpp"
 
 namespace ejecta {
 namespace {
 
-constexpr std::size_t max_file_size = 1u << 20;
-
-std::string read_file(const std::string& path) {
-  std::error_code ignored;
-  const std::filesystem::path file(path);
-  if (!std::filesystem::exists(file, ignored))
-    throw InputError(fmt::format("{}: no such file\n  a first case:  ejecta new > my-case.toml", path));
-  if (std::filesystem::is_directory(file, ignored))
-    throw InputError(fmt::format("{}: is a directory; a case is a .toml file", path));
-  std::ifstream stream(path, std::ios::binary);
-  if (!stream) throw InputError(fmt::format("{}: cannot be read (permissions?)", path));
-  std::string text(max_file_size + 1, '\0');
-  stream.read(text.data(), static_cast<std::streamsize>(text.size()));
-  if (stream.bad()) throw InputError(fmt::format("{}: reading failed", path));
-  text.resize(static_cast<std::size_t>(stream.gcount()));
-  return text;
-}
-
-/// The first byte from `n` on that is no part of a sign in UTF-8; the size of the text if there is none.
-std::size_t first_not_utf8(std::string_view text, std::size_t n = 0) {
-  const auto byte = [&](std::size_t n) { return n < text.size() ? static_cast<unsigned char>(text[n]) : 0u; };
-  while (n < text.size()) {
-    const unsigned first = byte(n);
-    const std::size_t length = first < 0x80   ? 1
-                               : first < 0xc2 ? 0
-                               : first < 0xe0 ? 2
-                               : first < 0xf0 ? 3
-                               : first < 0xf5 ? 4
-                                              : 0;
-    if (length == 0) return n;
-    for (std::size_t k = 1; k < length; ++k)
-      if ((byte(n + k) & 0xc0) != 0x80) return n;
-    n += length;
-  }
-  return text.size();
-}
-
-/// Refuses what cannot be a case before the parser sees it.
-void check_text(const std::string& text, const std::string& name) {
-  if (text.size() > max_file_size)
-    throw InputError(
-        fmt::format("{}: larger than {} MiB; a case is a short text (surfaces belong in an STL file)", name,
-                    max_file_size >> 20));
-  if (text.find_first_not_of(" \t\r\n") == std::string::npos)
-    throw InputError(fmt::format("{}: is empty\n  a first case:  ejecta new > my-case.toml", name));
-  for (char c : text) {
-    const auto u = static_cast<unsigned char>(c);
-    if (u == 0 || (u < 0x20 && c != '\t' && c != '\n' && c != '\r'))
-      throw InputError(fmt::format("{}: is not a text file (byte {:#04x}); a case is TOML", name, u));
-  }
-  if (const std::size_t at = first_not_utf8(text); at < text.size()) {
-    std::string shown = text;
-    for (std::size_t n = at; n < shown.size(); n = first_not_utf8(shown, n)) shown[n] = '?';
-    const Problem p{
-        .what = fmt::format("the byte {:#04x} is no UTF-8: the file was saved in another encoding, such as "
-                            "ANSI (Windows-1252)",
-                            static_cast<unsigned char>(text[at])),
-        .expected = "a file saved as UTF-8, as editors offer under \"Save as\"",
-        .place = {std::make_shared<Source>(Source{name, shown}), at, 1}};
-    throw InputError(render(std::vector{p}));
-  }
-}
-
 void throw_if_any(const std::vector<Problem>& problems) {
-  if (!problems.empty()) throw InputError(render(problems));
+  if (!problems.empty()) throw CaseError(problems);
 }
 
 /// Nobody knows what a whole section that could not be read was meant to say.
@@ -125,7 +60,7 @@ Case parse_case(const std::string& text, const std::string& name, const std::vec
                 std::vector<Problem>* warnings, const FurtherChecks& further) {
   check_text(text, name);
   std::vector<Problem> problems;
-  Node root = parse_toml(std::make_shared<Source>(Source{name, text}), problems);
+  Node root = parse_extended(std::make_shared<Source>(Source{name, text}), problems);
   // Keys may be missing only because their line could not be read: say what is wrong with the rest, not that.
   const bool syntax_errors = !problems.empty();
   for (const std::string& assignment : overrides) apply_override(root, assignment, problems);
@@ -193,7 +128,7 @@ std::vector<std::string> files_of(const Case& c) {
 
 Case load_case(const std::string& path, const std::vector<std::string>& overrides,
                std::vector<Problem>* warnings, const FurtherChecks& further) {
-  return parse_case(read_file(path), path, overrides, warnings, further);
+  return parse_case(read_case_text(path), path, overrides, warnings, further);
 }
 
 }  // namespace ejecta

@@ -12,6 +12,7 @@ namespace ejecta {
 struct Source {
   std::string name;  ///< path, or e.g. "--set run.end_time=1"
   std::string text;
+  std::string folder{};  ///< where files that it names lie, as seen from the folder of the case; empty: there
 };
 
 /// A stretch of a source.

@@ -38,6 +38,8 @@ std::string excerpt(const Place& place) {
 
 }  // namespace
 
+CaseError::CaseError(std::vector<Problem> list) : InputError(render(list)), problems(std::move(list)) {}
+
 std::string render(const Problem& p) {
   std::string text;
   if (p.place.source) text += fmt::format("{}:{}: ", p.place.source->name, p.place.line_number());
@@ -53,8 +55,12 @@ std::string render(const Problem& p) {
 
 std::string render(std::vector<Problem> problems) {
   constexpr std::size_t shown = 50;
-  std::stable_sort(problems.begin(), problems.end(),
-                   [](const Problem& a, const Problem& b) { return a.place.offset < b.place.offset; });
+  std::stable_sort(problems.begin(), problems.end(), [](const Problem& a, const Problem& b) {
+    const auto file = [](const Problem& p) {
+      return p.place.source ? std::string_view(p.place.source->name) : std::string_view();
+    };
+    return file(a) != file(b) ? file(a) < file(b) : a.place.offset < b.place.offset;
+  });
   std::string text;
   for (std::size_t n = 0; n < std::min(shown, problems.size()); ++n) text += render(problems[n]) + "\n";
   if (problems.size() > shown) text += fmt::format("... and {} more\n\n", problems.size() - shown);

@@ -2,6 +2,7 @@
 #include <string>
 #include <vector>
 
+#include "base/error.hpp"
 #include "case/node.hpp"
 
 namespace ejecta {
@@ -17,6 +18,12 @@ struct Problem {
   std::string example{};   ///< a line that works
   Severity severity = Severity::error;
   Place place{};  ///< without source: shown without line and caret
+};
+
+/// What is wrong with a case, problem by problem; its words are render() of them.
+struct CaseError : InputError {
+  explicit CaseError(std::vector<Problem> list);
+  std::vector<Problem> problems;
 };
 
 /// So many that nobody reads one more.

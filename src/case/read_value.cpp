@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <limits>
 
 #include "base/error.hpp"
@@ -22,9 +23,7 @@ class ValueReader {
 
   bool operator()(bool* out) { return plain<bool>(root_, *out); }
   bool operator()(std::optional<bool>* out) { return plain<bool>(root_, out->emplace()); }
-  bool operator()(std::string* out) {
-    return plain<std::string>(root_, *out) && without_escapes(root_, *out);
-  }
+  bool operator()(std::string* out) { return text(root_, *out); }
   bool operator()(int* out) { return integer(root_, *out); }
   bool operator()(std::int64_t* out) { return integer(root_, *out); }
   bool operator()(double* out) { return number(root_, *out); }
@@ -32,9 +31,7 @@ class ValueReader {
   bool operator()(Vec3* out) { return vector(root_, *out); }
   bool operator()(std::vector<double>* out) { return items(root_, *out, &ValueReader::number); }
   bool operator()(std::vector<int>* out) { return items(root_, *out, &ValueReader::integer<int>); }
-  bool operator()(std::vector<std::string>* out) {
-    return items(root_, *out, &ValueReader::plain<std::string>);
-  }
+  bool operator()(std::vector<std::string>* out) { return items(root_, *out, &ValueReader::text); }
   bool operator()(std::array<int, 3>* out) { return fixed(root_, *out, &ValueReader::integer<int>); }
   bool operator()(std::array<double, 2>* out) { return fixed(root_, *out, &ValueReader::number); }
   bool operator()(std::optional<std::array<double, 2>>* out) {
@@ -95,6 +92,14 @@ class ValueReader {
     const T* value = std::get_if<T>(&node.value);
     if (!value) return fail(node, kind_words(node) + " does not fit here");
     out = *value;
+    return true;
+  }
+
+  /// A file that an extended case names lies beside that case.
+  bool text(const Node& node, std::string& out) {
+    if (!plain<std::string>(node, out) || !without_escapes(node, out)) return false;
+    if (key_.file && !out.empty() && node.place.source && !node.place.source->folder.empty())
+      out = (std::filesystem::path(node.place.source->folder) / out).string();
     return true;
   }
 

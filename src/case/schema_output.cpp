@@ -81,7 +81,8 @@ std::vector<Key> keys(MeasuredSpec& s) {
            .help = "CSV with two columns and their units: position (m, mm) or time (s, ms), total gauge "
                    "pressure (Pa, kPa)",
            .required = true,
-           .example = "\"pitot.csv\""}};
+           .example = "\"pitot.csv\"",
+           .file = true}};
 }
 
 std::vector<Key> keys(OutputSpec& s) {

@@ -13,10 +13,10 @@
 namespace ejecta {
 namespace {
 
-constexpr int looks = 1000;  // at a formula over the run
+constexpr int kLooks = 1000;  // at a formula over the run
 constexpr std::uintmax_t largest_file = 64 << 20;
 
-constexpr const char* formula_example = R"x(velocity = ["= 0.2 * cos(100 * t)", "0 m/s", "0 m/s"])x";
+constexpr const char* kFormulaExample = R"x(velocity = ["= 0.2 * cos(100 * t)", "0 m/s", "0 m/s"])x";
 
 void check_formulas(const Case& c, const BodySpec& b, const std::string& key,
                     const std::optional<std::array<std::string, 3>>& formulas, Findings& found) {
@@ -28,13 +28,13 @@ void check_formulas(const Case& c, const BodySpec& b, const std::string& key,
     const Expression formula(text);
     if (formula.uses_space())
       return found.error(key, fmt::format("\"{}\" depends on the place, not on the time alone", text),
-                         "formulas in t", formula_example);
-    for (int n = 0; n <= looks; ++n) {
-      const double t = c.run.end_time * n / looks, value = formula(0, 0, 0, t);
+                         "formulas in t", kFormulaExample);
+    for (int n = 0; n <= kLooks; ++n) {
+      const double t = c.run.end_time * n / kLooks, value = formula(0, 0, 0, t);
       if (!std::isfinite(value))
         return found.error(
             key, fmt::format("\"{}\" gives {} at t = {}", text, value, format_quantity(t, Dimension::time)),
-            "a number at all times of the run", formula_example);
+            "a number at all times of the run", kFormulaExample);
     }
   }
 }

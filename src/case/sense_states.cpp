@@ -17,7 +17,7 @@ namespace ejecta {
 namespace {
 
 // Along each axis: a formula that is wrong between so many places is not found, but the check stays quick.
-constexpr std::size_t looks_at_face = 400, looks_at_region = 64;
+constexpr std::size_t kLooksAtFace = 400, looks_at_region = 64;
 
 using Points = std::array<std::vector<double>, 3>;
 using Inside = std::function<bool(const Vec3&)>;
@@ -155,7 +155,7 @@ void sense_states(const Case& c, Findings& found) {
   if (c.flow.solver == FlowSolver::none || !box) return;
   if (c.flow.solver == FlowSolver::compressible_piso && !c.bodies.empty()) check_gas(c, found);
   Points cells;
-  for (std::size_t a = 0; a < 3; ++a) cells[a] = thinned(cell_centres(c.grid.axis[a]), looks_at_face);
+  for (std::size_t a = 0; a < 3; ++a) cells[a] = thinned(cell_centres(c.grid.axis[a]), kLooksAtFace);
   const auto everywhere = [](const Vec3&) { return true; };
   for (std::size_t f = 0; f < 6; ++f) {
     const BoundarySpec& face = c.boundary[f];

@@ -12,8 +12,8 @@
 namespace ejecta {
 namespace {
 
-constexpr int max_syntax_errors = 20;
-constexpr int max_nesting = 32, max_dots = 200;  // toml11 recurses
+constexpr int kMaxSyntaxErrors = 20;
+constexpr int kMaxNesting = 32, kMaxDots = 200;  // toml11 recurses
 
 Place place_of(const toml::value& v, const std::shared_ptr<const Source>& source) {
   Place place{source, 0, 0};
@@ -71,7 +71,7 @@ bool nested_too_deeply(const std::string& text, std::size_t& where) {
     else if ((c == ']' || c == '}') && brackets > 0) --brackets;
     if (c == '.') ++dots;
     else if (c == ',' || c == '=' || c == '\n' || c == ']') dots = 0;
-    if (brackets > max_nesting || dots > max_dots) return true;
+    if (brackets > kMaxNesting || dots > kMaxDots) return true;
   }
   return false;
 }
@@ -205,7 +205,7 @@ Node parse_toml(std::shared_ptr<const Source> source, std::vector<Problem>& prob
   }
   std::string text = source->text;
   if (!text.ends_with('\n')) text += '\n';
-  for (int n = 0; n < max_syntax_errors; ++n) {
+  for (int n = 0; n < kMaxSyntaxErrors; ++n) {
     std::istringstream stream(text);
     try {
       return convert(toml::parse(stream, source->name), source);

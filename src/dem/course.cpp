@@ -220,7 +220,7 @@ std::shared_ptr<const Course> make_course(const BodySpec& spec, const std::strin
     const std::string file = (std::filesystem::path(directory) / spec.path).string();
     std::vector<Problem> problems;
     PathTable table = read_path_file(file, problems);
-    if (!problems.empty()) throw InputError(render(problems));
+    if (!problems.empty()) throw CaseError(problems);
     return std::make_shared<Course>(std::move(table), spec.rotation_axis.normalized());
   }
   if (!spec.velocity_formula && !spec.spin_formula) return std::make_shared<Course>(spec.velocity, spec.spin);

@@ -204,8 +204,9 @@ void Boundaries::fill_pressure(FieldView p, const std::array<FieldView, 3>& q, b
   }
 }
 
-void Boundaries::fill_turbulence(FieldView k, FieldView second, const std::array<FieldView, 3>& q) const {
-  const std::array<FieldView, 2> both{k, second};
+void Boundaries::fill_turbulence(FieldView k, FieldView dissipation,
+                                 const std::array<FieldView, 3>& q) const {
+  const std::array<FieldView, 2> both{k, dissipation};
   for (int face = 0; face < 6; ++face) {
     if (!grid_.active(face / 2)) continue;
     const Side s = side(k, face);
@@ -218,7 +219,7 @@ void Boundaries::fill_turbulence(FieldView k, FieldView second, const std::array
       const Real through = through_face[s.cell(a, b)];
       const BoundaryState& state = at(face, a, b);
       const bool enters = s.upper ? through < 0 : through > 0;
-      return !enters || state.k <= 0 ? inner : c == 0 ? state.k : state.second;
+      return !enters || state.k <= 0 ? inner : c == 0 ? state.k : state.dissipation;
     });
   }
 }

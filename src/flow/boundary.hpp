@@ -13,11 +13,11 @@ namespace ejecta {
 /// with a state: `inflow` also serves moving walls and jets, `open` outlets, free streams and total pressure.
 enum class BoundaryKind { inflow, wall, mirror, open, periodic };
 
-/// What comes in through a boundary: velocity (m/s), turbulent kinetic energy (m2/s2) and the second
-/// turbulence variable (epsilon, m2/s3, or omega, 1/s). Open: p / rho where fluid leaves, m2/s2 gauge.
+/// What comes in through a boundary: velocity (m/s), turbulent kinetic energy (m2/s2) and its dissipation
+/// (epsilon, m2/s3, or omega, 1/s). Open: p / rho where fluid leaves, m2/s2 gauge.
 struct BoundaryState {
   std::array<Real, 3> velocity{0, 0, 0};
-  Real k = 0, second = 0, pressure = 0;
+  Real k = 0, dissipation = 0, pressure = 0;
   bool prescribed = false;  ///< the velocity holds although the face is open (a nozzle in it)
 };
 
@@ -72,8 +72,8 @@ class Boundaries {
   /// Ghosts of p / rho: `total` is the pressure itself, otherwise an increment (zero where pressure is
   /// fixed).
   void fill_pressure(FieldView p, const std::array<FieldView, 3>& q, bool total) const;
-  /// Ghosts of k and the second turbulence variable.
-  void fill_turbulence(FieldView k, FieldView second, const std::array<FieldView, 3>& q) const;
+  /// Ghosts of k and its dissipation.
+  void fill_turbulence(FieldView k, FieldView dissipation, const std::array<FieldView, 3>& q) const;
   /// Ghosts by zero gradient (periodic where periodic).
   void fill_zero_gradient(FieldView f) const;
   /// Sets q on the boundary faces: states, zero on mirrors, extrapolated u_star with the pressure force of

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <memory>
+#include <string>
 #include <type_traits>
 
 #include "base/parallel.hpp"
@@ -71,6 +72,11 @@ class Array3 {
 };
 
 using Field = Array3<Real>;
+/// Part of a state that is saved and restored.
+struct NamedField {
+  std::string name;
+  Field* field = nullptr;
+};
 using FieldView = View<Real>;
 using ConstFieldView = View<const Real>;
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "base/error.hpp"
+#include "base/state_reader.hpp"
 #include "flow/model/gas_from_case.hpp"
 #include "flow/model/incompressible_model.hpp"
 #include "grid/sampler.hpp"
@@ -49,6 +50,19 @@ class CompressibleAir : public JetAir {
     const godunov::Block& f = solver_->flux(2);
     return {double(f[godunov::kRho](i, j, k)), double(f[godunov::kW](i, j, k))};
   }
+  bool finite(Vec3* where) const override { return solver_->finite(where); }
+  std::vector<NamedField> state_fields() override { return solver_->state(); }
+  std::vector<double> state_numbers() const override {
+    std::vector<double> all;
+    for (const double* v : solver_->state_numbers()) all.push_back(*v);
+    return all;
+  }
+  void restore_numbers(std::span<const double> numbers, double) override {
+    StateReader in(numbers, "gas of the jet");
+    for (double* v : solver_->state_numbers()) *v = in.number();
+    in.end();
+    solver_->resume();
+  }
 
  private:
   const Case& case_;
@@ -92,6 +106,12 @@ class IncompressibleAir : public JetAir {
                  (centre(k) - centre(k - 1));
     const double viscosity = case_.fluid.viscosity + rho * v[kEddy];
     return {rho * w, rho * w * w + v[kPressure] - 2.0 * viscosity * gradient};
+  }
+  bool finite(Vec3* where) const override { return flow_->finite(where); }
+  std::vector<NamedField> state_fields() override { return flow_->state_fields(); }
+  std::vector<double> state_numbers() const override { return flow_->state_numbers(); }
+  void restore_numbers(std::span<const double> numbers, double time) override {
+    flow_->restore_numbers(numbers, time);
   }
 
  private:

@@ -1,8 +1,11 @@
 #pragma once
 #include <memory>
+#include <span>
+#include <vector>
 
 #include "base/vec.hpp"
 #include "case/case.hpp"
+#include "grid/field.hpp"
 #include "grid/grid.hpp"
 
 namespace ejecta {
@@ -32,6 +35,13 @@ class JetAir {
   virtual JetPoint at(const Vec3& position) const = 0;
   /// Per area through the lower face along z of cell (i, j, k); k = nz: through the upper end of the box.
   virtual JetFlow flux(int i, int j, int k) const = 0;
+
+  virtual bool finite(Vec3* where) const = 0;
+  /// Everything a resume needs.
+  virtual std::vector<NamedField> state_fields() = 0;
+  virtual std::vector<double> state_numbers() const = 0;
+  /// Once the fields are back.
+  virtual void restore_numbers(std::span<const double> numbers, double time) = 0;
 };
 
 /// Throws InputError when the solver the case asks for computes no jet.

@@ -28,7 +28,9 @@ InflowState SelfSimilarJet::at(const Vec3& x, double equivalent_velocity) const 
 }
 
 NozzleInflow::NozzleInflow(const JetSpec& jet, const ValveSpec& valve)
-    : nozzle_(jet.nozzle), radius_(0.5 * valve.orifice_diameter), intensity_(jet.turbulence_intensity) {}
+    : nozzle_(jet.nozzle),
+      radius_(0.5 * valve.orifice_diameter * std::sqrt(valve.discharge_coefficient)),
+      intensity_(jet.turbulence_intensity) {}
 
 InflowState NozzleInflow::at(double share, double velocity) const {
   InflowState s;

@@ -48,24 +48,36 @@ bool has_orifices(const Case& c) {
   });
 }
 
+Inflow of_orifices(const Case& c) {
+  Inflow in;
+  const auto drive = std::make_shared<const JetDrive>(c);
+  in.supply = [drive](double time) { return drive->supply(time); };
+  in.events = drive->valve().events();
+  in.shut_from = drive->valve().closed_from();
+  return in;
+}
+
 }  // namespace
 
 Inflow inflow_of(const Case& c, const Note& note) {
   Inflow in;
   if (!has_jet(c)) return in;
-  if (has_orifices(c)) {
-    const auto drive = std::make_shared<const JetDrive>(c);
-    in.supply = [drive](double time) { return drive->supply(time); };
-    in.events = drive->valve().events();
-    in.shut_from = drive->valve().closed_from();
-    return in;
-  }
+  if (has_orifices(c)) return of_orifices(c);
   const auto inlet = std::make_shared<const JetInlet>(c, note);
   in.at = [inlet](const Vec3& x, const Vec3& half, double time) { return inlet->at(x, half, time); };
   in.fastest = [inlet](double time) { return inlet->fastest(time); };
   in.face = inlet->face();
   in.events = inlet->source().events();
   in.shut_from = inlet->source().dead_from();
+  return in;
+}
+
+Inflow planned_inflow(const Case& c) {
+  if (!has_jet(c) || has_orifices(c) || c.jet.kind != JetKind::computed) return inflow_of(c);
+  Inflow in;
+  in.at = [](const Vec3&, const Vec3&, double) { return InflowState{}; };
+  in.fastest = [](double) { return 0.0; };
+  in.face = *jet_face(c);
   return in;
 }
 

@@ -32,5 +32,7 @@ class JetInlet {
 /// What the jet of a case lets into its box: a stream through a face, or the supply of the orifices that the
 /// grid of a gas resolves. A computed jet that is not stored yet is computed now.
 Inflow inflow_of(const Case& c, const Note& note = {});
+/// The same for those who take no step: no jet is computed, and a computed one blows nothing.
+Inflow planned_inflow(const Case& c);
 
 }  // namespace ejecta

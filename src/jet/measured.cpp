@@ -27,7 +27,7 @@ MeasuredCurve read_measured(const std::filesystem::path& file, Dimension positio
 MeasuredCurve read_measured(const std::filesystem::path& file, Dimension position) {
   std::vector<Problem> problems;
   const MeasuredCurve curve = read_measured(file, position, problems);
-  if (!problems.empty()) throw InputError(render(problems));
+  if (!problems.empty()) throw CaseError(problems);
   return curve;
 }
 

@@ -41,12 +41,10 @@ JetModel::JetModel(const Case& c)
       gas_{c.fluid.gamma, c.fluid.gas_constant},
       orifice_(orifice_of(c)),
       air_(make_jet_air(case_, grid_)) {
-  if (grid_.axisymmetric()) around_ = 2.0 * std::numbers::pi;
+  if (grid_.axisymmetric()) whole_jet_ = 2.0 * std::numbers::pi;
   for (int d = 0; d < 2; ++d)
     if (!grid_.axisymmetric() && grid_.active(d) && std::abs(grid_.lower()[d] - orifice_.centre[d]) < 1e-9)
-      around_ *= 2.0;
-  for (const double t : valve().events()) clock_.add_event(t);
-  clock_.add_event(c.run.end_time);
+      whole_jet_ *= 2.0;
 }
 
 double JetModel::cells_across_orifice() const {
@@ -55,13 +53,33 @@ double JetModel::cells_across_orifice() const {
   return 2.0 * orifice_.radius / width;
 }
 
-double JetModel::step() {
-  double dt = std::min(air_->stable_dt(time()), case_.run.time_step_max);
-  if (case_.run.time_step) dt = *case_.run.time_step;
-  dt = clock_.land_on_events(dt);
-  air_->advance(time(), dt);
-  clock_.tick(dt);
-  return last_step_ = dt;
+double JetModel::stable_dt(double time) {
+  const double dt = std::min(air_->stable_dt(time), case_.run.time_step_max);
+  return case_.run.time_step.value_or(dt);
+}
+
+void JetModel::advance(const Step& step) {
+  air_->advance(step.from, step.dt);
+  time_ = step.to;
+}
+
+Clock JetModel::clock() const {
+  Clock clock;
+  for (const double t : valve().events()) clock.add_event(t);
+  clock.add_event(case_.run.end_time);
+  return clock;
+}
+
+Step JetModel::step(Clock& clock) {
+  const Step step = clock.next(stable_dt(clock.time()));
+  advance(step);
+  clock.tick(step);
+  return step;
+}
+
+void JetModel::restore(std::span<const double> numbers, double time) {
+  air_->restore_numbers(numbers, time);
+  time_ = time;
 }
 
 JetSample JetModel::sample(const Vec3& position) const {
@@ -98,7 +116,7 @@ JetFlow JetModel::sum_flow(int k, double within) const {
       sum.mass += area * flux.mass;
       sum.momentum += area * flux.momentum;
     }
-  return {around_ * sum.mass, around_ * sum.momentum};
+  return {whole_jet_ * sum.mass, around_ * sum.momentum};
 }
 
 }  // namespace ejecta

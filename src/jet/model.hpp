@@ -32,12 +32,14 @@ class JetModel {
   JetModel(const JetModel&) = delete;  // the air refers to case and grid
   JetModel& operator=(const JetModel&) = delete;
 
-  double time() const { return clock_.time(); }
-  std::int64_t steps() const { return clock_.step(); }
-  Clock& clock() { return clock_; }
-  /// Advances by one stable step that does not pass the next event; returns it, s.
-  double step();
-  double last_step() const { return last_step_; }  ///< s; 0 before the first
+  double time() const { return time_; }  ///< s
+  /// The longest stable step from `time` on, s.
+  double stable_dt(double time);
+  void advance(const Step& step);
+  /// What the steps must land on: the valve's events and the end.
+  Clock clock() const;
+  /// Advances by one step of the clock.
+  Step step(Clock& clock);
 
   JetSample sample(const Vec3& position) const;
   /// Through the z-plane of lower face k, whole jet (symmetry planes and the axis made up for).
@@ -47,6 +49,11 @@ class JetModel {
   /// Exact one-dimensional state the orifice should have now.
   NozzleExit ideal_exit() const { return drive_.orifice(time()); }
 
+  JetAir& air() { return *air_; }
+  const JetAir& air() const { return *air_; }
+  /// Takes the air back to what its fields hold.
+  void restore(std::span<const double> numbers, double time);
+
   const Grid& grid() const { return grid_; }
   const Case& scenario() const { return case_; }
   const Valve& valve() const { return drive_.valve(); }
@@ -54,7 +61,7 @@ class JetModel {
   double orifice_diameter() const { return case_.valve.orifice_diameter; }
   double cells_across_orifice() const;
   /// Whole jet over the part inside the box: 4 for a quarter domain, 2 pi for the wedge of one radian.
-  double around() const { return around_; }
+  double whole_jet() const { return whole_jet_; }
 
  private:
   JetFlow sum_flow(int k, double within) const;
@@ -64,8 +71,7 @@ class JetModel {
   Gas gas_;
   PatchSpec orifice_;
   std::unique_ptr<JetAir> air_;
-  Clock clock_;
-  double around_ = 1.0, last_step_ = 0.0;
+  double whole_jet_ = 1.0, time_ = 0.0;
 };
 
 }  // namespace ejecta

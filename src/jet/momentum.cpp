@@ -41,4 +41,14 @@ nlohmann::ordered_json MomentumRecord::summary() const {
   return r;
 }
 
+void MomentumRecord::save(std::vector<double>& out) const {
+  out.insert(out.end(), {thrust_, time_});
+  out.insert(out.end(), sum_.begin(), sum_.end());
+}
+
+void MomentumRecord::load(StateReader& in) {
+  for (double* v : {&thrust_, &time_}) *v = in.number();
+  for (double& v : sum_) v = in.number();
+}
+
 }  // namespace ejecta

@@ -2,6 +2,7 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
+#include "base/state_reader.hpp"
 #include "jet/model.hpp"
 
 namespace ejecta {
@@ -19,6 +20,8 @@ class MomentumRecord {
   const std::vector<double>& heights() const { return height_; }         ///< m above the orifice
   /// Smallest and largest over that of the orifice's plane, and a dozen heights over the thrust.
   nlohmann::ordered_json summary() const;
+  void save(std::vector<double>& out) const;
+  void load(StateReader& in);
 
  private:
   std::vector<double> height_, sum_;

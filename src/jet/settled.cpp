@@ -32,7 +32,7 @@ double jet_momentum(const JetModel& jet, double height) {
       const double w = std::max(0.0, s.velocity.z());
       sum += double(x.volume[i]) * double(y.volume[j]) * s.density * w * w;
     }
-  return jet.around() * sum;
+  return jet.whole_jet() * sum;
 }
 
 Case blown(Case c, double time) {
@@ -54,31 +54,35 @@ Case incompressible_jet(Case c, double velocity) {
   return c;
 }
 
-SettledJet settled_jet(const Case& c, double height, const Note& note) {
+std::optional<SettledJet> settled_jet(const Case& c, double height, const Note& note,
+                                      const std::function<bool()>& stop) {
   const Gas gas{c.fluid.gamma, c.fluid.gas_constant};
   const double warm =
       c.valve.supply_temperature > 0.0 ? c.valve.supply_temperature : c.environment.temperature;
   const NozzleExit exit = nozzle_exit(gas, c.valve.supply_pressure, warm, c.environment.pressure);
   const double blown_at = c.flow.solver == FlowSolver::incompressible ? c.jet.inlet_velocity : 0.0;
   const double head =
-      arrival(blown_at > 0.0 ? c.fluid.density * nozzle_area(c.valve.orifice_diameter) * blown_at * blown_at
+      arrival(blown_at > 0.0 ? c.fluid.density * c.valve.discharge_coefficient *
+                                   nozzle_area(c.valve.orifice_diameter) * blown_at * blown_at
                              : nozzle_thrust(exit, c.valve.discharge_coefficient, c.valve.orifice_diameter),
               c.fluid.density, height);
   SettledJet s{.scenario = blown(c, kArrivals * head)};
-  s.equivalent_velocity = nozzle_equivalent_velocity(exit, c.valve.discharge_coefficient, c.fluid.density);
+  s.equivalent_velocity = nozzle_equivalent_velocity(exit, 1.0, c.fluid.density);
   JetModel jet(s.scenario);
   MomentumRecord momentum(jet);
   const double end = s.scenario.run.end_time;
   double unseen = 0.0;
   // The valve shuts at the end: what is looked at is the last moment before.
-  while (jet.time() + jet.last_step() < end) {
-    const double dt = jet.step();
-    if (jet.time() < end - head || (unseen += dt) < kLook) continue;
+  Clock clock = jet.clock();
+  for (Step step; jet.time() + step.dt < end;) {
+    if (stop && stop()) return std::nullopt;
+    step = jet.step(clock);
+    if (jet.time() < end - head || (unseen += step.dt) < kLook) continue;
     momentum.observe(jet, unseen);
     unseen = 0.0;
   }
   s.time = jet.time();
-  s.steps = jet.steps();
+  s.steps = clock.steps();
   s.line = centreline(jet);
   s.heights = momentum.heights();
   s.momentum = momentum.mean();
@@ -86,16 +90,26 @@ SettledJet settled_jet(const Case& c, double height, const Note& note) {
   s.momentum_summary = momentum.summary();
   s.at_stand_off = jet.sample(jet.grid().lower() + Vec3(0, 0, c.launch.stand_off));
   s.momentum_at_stand_off = jet_momentum(jet, c.launch.stand_off);
-  note(fmt::format(
-      "{}: {:.3f} ms, {} steps, {:.0f} m/s and {:.2f} kPa on the axis at {:.0f} mm",
-      c.flow.solver == FlowSolver::compressible
-          ? fmt::format("compressible, {:.0f} kPa gauge",
-                        1e-3 * (c.valve.supply_pressure - c.environment.pressure))
-          : fmt::format("incompressible, {:.0f} m/s",
-                        c.jet.inlet_velocity > 0.0 ? c.jet.inlet_velocity : s.equivalent_velocity),
-      1e3 * s.time, s.steps, s.at_stand_off.velocity.z(), 1e-3 * s.at_stand_off.total_gauge,
-      1e3 * c.launch.stand_off));
+  if (note)
+    note(fmt::format(
+        "{}: {:.3f} ms, {} steps, {:.0f} m/s and {:.2f} kPa on the axis at {:.0f} mm",
+        c.flow.solver == FlowSolver::compressible
+            ? fmt::format("compressible, {:.0f} kPa gauge",
+                          1e-3 * (c.valve.supply_pressure - c.environment.pressure))
+            : fmt::format("incompressible, {:.0f} m/s",
+                          c.jet.inlet_velocity > 0.0 ? c.jet.inlet_velocity : s.equivalent_velocity),
+        1e3 * s.time, s.steps, s.at_stand_off.velocity.z(), 1e-3 * s.at_stand_off.total_gauge,
+        1e3 * c.launch.stand_off));
   return s;
+}
+
+double where_square_reaches(const std::vector<double>& x, const std::vector<double>& y, double wanted) {
+  const auto above = std::lower_bound(y.begin(), y.end(), wanted);
+  if (above == y.begin()) return x.front() * std::sqrt(wanted / y.front());
+  if (above == y.end()) return x.back() * std::sqrt(wanted / y.back());
+  const auto n = static_cast<std::size_t>(above - y.begin());
+  const double share = (wanted - y[n - 1]) / (y[n] - y[n - 1]);
+  return std::sqrt((1.0 - share) * x[n - 1] * x[n - 1] + share * x[n] * x[n]);
 }
 
 }  // namespace ejecta

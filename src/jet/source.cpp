@@ -34,7 +34,7 @@ class ValveJet : public JetSource {
   InflowState at(const Vec3& x, double half_x, double half_y, double time) const override {
     const double u = velocity(time);
     if (jet_.kind == JetKind::self_similar) return far_.at(x, u);
-    const double share = near_.share(x, half_x, half_y);
+    const double share = near_.share(x, half_x, half_y);  // of the disc that flows, C_D of the orifice
     return share > 0.0 ? near_.at(share, u) : InflowState{};
   }
   double fastest(double time, double height) const override {
@@ -51,11 +51,12 @@ class ValveJet : public JetSource {
   }
   /// Momentum-equivalent velocity, or the one the case gives, opened like the momentum of the valve.
   double velocity(double time) const {
+    const double flowing = jet_.kind == JetKind::self_similar ? spec_.discharge_coefficient : 1.0;
     if (jet_.inlet_velocity > 0.0) {
       const double full = nozzle_exit(gas_, spec_.supply_pressure, temperature_, ambient_).thrust_per_area;
       return jet_.inlet_velocity * std::sqrt(orifice(time).thrust_per_area / full);
     }
-    return nozzle_equivalent_velocity(orifice(time), spec_.discharge_coefficient, density_);
+    return nozzle_equivalent_velocity(orifice(time), flowing, density_);
   }
 
   JetSpec jet_;

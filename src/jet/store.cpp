@@ -97,6 +97,31 @@ void ProfileRecorder::advance(const JetModel& jet) {
   profile_.add(profile_moment(jet, profile_.height(), profile_.radii()));
 }
 
+void ProfileRecorder::save(std::vector<double>& out) const {
+  const auto& moments = profile_.moments();
+  out.insert(out.end(), {next_, double(moments.size())});
+  for (const JetProfile::Moment& m : moments) {
+    out.push_back(m.time);
+    for (const auto* values : {&m.axial, &m.radial, &m.k, &m.epsilon})
+      out.insert(out.end(), values->begin(), values->end());
+  }
+}
+
+void ProfileRecorder::load(StateReader& in) {
+  next_ = in.number();
+  const std::size_t points = profile_.radii().size();
+  JetProfile profile(profile_.height(), profile_.radii());
+  for (std::size_t left = in.count(1 + 4 * points); left > 0; --left) {
+    JetProfile::Moment m{.time = in.number(), .axial = {}, .radial = {}, .k = {}, .epsilon = {}};
+    for (auto* values : {&m.axial, &m.radial, &m.k, &m.epsilon}) {
+      const auto numbers = in.numbers(points);
+      values->assign(numbers.begin(), numbers.end());
+    }
+    profile.add(m);
+  }
+  profile_ = std::move(profile);
+}
+
 namespace {
 
 /// Nothing where there is no such file or it is damaged.
@@ -123,8 +148,8 @@ JetProfile stored_or_computed_jet(const Case& c, double height, const Note& note
   if (note) note(fmt::format("computing the jet of {} once; it is kept in {}", c.path, file.string()));
   JetModel jet(c);
   ProfileRecorder recorder(jet, height);
-  while (jet.time() < c.run.end_time) {
-    jet.step();
+  for (Clock clock = jet.clock(); jet.time() < c.run.end_time;) {
+    jet.step(clock);
     recorder.advance(jet);
   }
   recorder.profile().write(file);

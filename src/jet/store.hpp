@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include "base/state_reader.hpp"
 #include "base/text.hpp"
 #include "case/case.hpp"
 #include "jet/profile.hpp"
@@ -34,6 +35,8 @@ class ProfileRecorder {
   ProfileRecorder(const JetModel& jet, double height);
   void advance(const JetModel& jet);
   const JetProfile& profile() const { return profile_; }
+  void save(std::vector<double>& out) const;
+  void load(StateReader& in);
 
  private:
   JetProfile profile_;

@@ -43,7 +43,7 @@ Valve::Valve(const ValveSpec& spec, const std::string& directory) : spec_(spec) 
     const std::filesystem::path file = std::filesystem::path(directory) / spec.trace;
     std::vector<Problem> problems;
     trace_ = read_valve_trace(file.string(), problems);
-    if (!problems.empty()) throw InputError(render(problems));
+    if (!problems.empty()) throw CaseError(problems);
   } else {
     require(spec.duration > 0.0, "duration", spec.duration, "a time above zero, or the valve never opens");
   }

@@ -25,7 +25,7 @@
 namespace ejecta {
 namespace {
 
-constexpr double cells_needed = 4.0, cells_advised = 8.0;  // across the smallest feature (Hager 2014: 8)
+constexpr double kCellsNeeded = 4.0, kCellsAdvised = 8.0;  // across the smallest feature (Hager 2014: 8)
 constexpr double kTouch = 1e-6;         // of a body: that much it may stick out by rounding
 constexpr double kRest = 1e-3;          // likewise into a wall on which it rests (Particles::require_apart)
 constexpr double kRounding = 1 - 1e-9;  // of counts of cells
@@ -154,12 +154,12 @@ class BodyCheck {
   void resolved() {
     const Resolution r = resolution_of(grid_, body_, at_);
     const std::string what = resolution_words(r, body_);
-    if (r.cells < cells_needed * kRounding)
+    if (r.cells < kCellsNeeded * kRounding)
       problem(Severity::error, key_, what + ": the air's force on it would be wrong",
-              fmt::format("at least {}, better {}", cells_needed, cells_advised));
-    else if (r.cells < cells_advised * kRounding)
+              fmt::format("at least {}, better {}", kCellsNeeded, kCellsAdvised));
+    else if (r.cells < kCellsAdvised * kRounding)
       problem(Severity::warning, key_, what,
-              fmt::format("at least {} for results that do not depend on the grid", cells_advised));
+              fmt::format("at least {} for results that do not depend on the grid", kCellsAdvised));
   }
 
   const Case& case_;
@@ -334,6 +334,15 @@ Vec3 extent_of(const TriangleMesh& mesh) {
     high = high.cwiseMax(v);
   }
   return high - low;
+}
+
+Vec3 body_size(const Body& body) {
+  Vec3 size;
+  for (int d = 0; d < 3; ++d) {
+    const Vec3 along = Vec3::Unit(d);
+    size[d] = along.dot(body.shape.support(along)) - along.dot(body.shape.support(-along));
+  }
+  return size;
 }
 
 Reach reach_of(const Body& body) {

@@ -19,6 +19,8 @@ struct Reach {
   Vec3 low{0, 0, 0}, high{0, 0, 0};
 };
 Reach reach_of(const Body& body);
+/// Edges of the box in body axes that just holds it, m.
+Vec3 body_size(const Body& body);
 
 /// Edges of the box along the axes that just holds a surface, m.
 Vec3 extent_of(const TriangleMesh& mesh);

@@ -80,11 +80,7 @@ std::string parts_words(const Shape& shape) {
 
 /// Edges of the box in body axes that just holds it, its volume and mass.
 std::string size_words(const Body& body) {
-  Vec3 size;
-  for (int d = 0; d < 3; ++d) {
-    const Vec3 along = Vec3::Unit(d);
-    size[d] = along.dot(body.shape.support(along)) - along.dot(body.shape.support(-along));
-  }
+  const Vec3 size = body_size(body);
   const bool metres = size.maxCoeff() >= 1.0;
   const double unit = metres ? 1.0 : 1e3, volume = body.shape.mass_properties().volume;
   std::string text = fmt::format("{:.3g} x {:.3g} x {:.3g} {}, ", unit * size.x(), unit * size.y(),

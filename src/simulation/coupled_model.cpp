@@ -10,6 +10,7 @@
 #include "base/stopwatch.hpp"
 #include "case/copies.hpp"
 #include "jet/inlet.hpp"
+#include "simulation/air_forecast.hpp"
 #include "simulation/air_limits.hpp"
 #include "simulation/body_checks.hpp"
 
@@ -29,9 +30,12 @@ constexpr double kFlightStep = 1e-4;
 }  // namespace
 
 CoupledModel::CoupledModel(const Case& c, const Note& note)
+    : CoupledModel(c, c.flow.solver == FlowSolver::none ? Inflow{} : inflow_of(c, note)) {}
+
+CoupledModel::CoupledModel(const Case& c, Inflow inflow)
     : case_(with_copies(c)),
       grid_(grid_of(c)),
-      inflow_(case_.flow.solver == FlowSolver::none ? Inflow{} : inflow_of(case_, note)),
+      inflow_(std::move(inflow)),
       flow_(make_flow_model(case_, grid_, inflow_)),
       scene_(make_scene(case_, flow_ ? &grid_ : nullptr)),
       particles_(scene_.particles),
@@ -51,6 +55,8 @@ CoupledModel::CoupledModel(const Case& c, const Note& note)
     paces_.push_back(b.course ? b.course->pace(case_.run.end_time) : Course::Pace{});
   check_bodies();
   build_step();
+  // A verdict comes in free flight, which costs nothing: what is left to wait for is the air.
+  busy_until_ = std::min(case_.run.end_time, air_until(case_, company_of(scene_)));
 }
 
 CouplingSetup CoupledModel::coupling_setup() const {
@@ -86,7 +92,7 @@ void CoupledModel::check_bodies() const {
   if (!flow_) return;
   std::vector<Problem> problems = ejecta::check_bodies(case_, grid_, particles_.bodies());
   std::erase_if(problems, [](const Problem& p) { return p.severity != Severity::error; });
-  if (!problems.empty()) throw InputError(render(problems));
+  if (!problems.empty()) throw CaseError(problems);
 }
 
 void CoupledModel::build_step() {
@@ -121,8 +127,7 @@ void CoupledModel::build_step() {
                        }
                      }});
   if (!case_.bodies.empty())
-    step_.push_back({"bodies.advance",
-                     "m dV/dt = F_contact + m g + F_fluid (Eq. 4), I dw/dt + w x I w = T (Eq. 5)",
+    step_.push_back({"bodies.advance", "m dV/dt = F_contact + m g + F_fluid, I dw/dt + w x I w = T",
                      [this](double, double dt) {
                        for (std::size_t b = 0; b < before_.size(); ++b)
                          before_[b] = particles_.bodies()[b].position;
@@ -136,7 +141,7 @@ void CoupledModel::build_step() {
          [this](double time, double dt) { splitter_->watch(particles_.bodies(), before_, time + dt, dt); }});
 }
 
-double CoupledModel::stable_dt(double time) const {
+double CoupledModel::stable_dt(double time) {
   double dt = case_.run.time_step_max;
   if (case_.run.time_step) dt = *case_.run.time_step;
   if (flow_ && air_) {
@@ -172,7 +177,8 @@ double CoupledModel::step_of_bodies(double time, double dt) const {
   return rate > 0.0 ? way / rate : dt;
 }
 
-void CoupledModel::advance(double time, double dt) {
+void CoupledModel::advance(const Step& s) {
+  const double time = s.from, dt = s.dt;
   if (flow_ && air_) {
     courant_ = flow_->courant(dt);
     if (!std::isfinite(courant_)) require_finite(time);
@@ -266,22 +272,51 @@ std::vector<OperatorTime> CoupledModel::operator_times() const {
   return all;
 }
 
-std::vector<std::vector<double>> CoupledModel::state_numbers() const {
+/// When the last undecided body that flies on should have come to the plate, with half as much again, s.
+std::optional<double> CoupledModel::later_end(double time) const {
+  double latest = 0.0;
+  const auto bodies = particles_.bodies();
+  for (std::size_t b = 0; splitter_ && b < bodies.size(); ++b) {
+    if (!splitter_->judges(b) || splitter_->verdict(b)) continue;
+    const double way = splitter_->edge().x() - bodies[b].position.x();
+    if (bodies[b].velocity.x() > 0.0) latest = std::max(latest, way / bodies[b].velocity.x());
+  }
+  if (!(latest > 0.0) || latest > 100.0) return std::nullopt;
+  return std::ceil(1e3 * (time + 1.5 * latest)) * 1e-3;
+}
+
+std::vector<NamedField> CoupledModel::state_fields() {
+  return flow_ ? flow_->state_fields() : std::vector<NamedField>{};
+}
+
+StateNumbers CoupledModel::state_numbers() const {
+  StateNumbers all{{"sums", own_state()}, {"bodies", particles_.state()}};
+  if (flow_) all["air"] = flow_->state_numbers();
+  if (coupling_) all["forces"] = coupling_->state();
+  if (splitter_) all["verdicts"] = splitter_->state();
+  return all;
+}
+
+std::vector<double> CoupledModel::own_state() const {
   std::vector<double> own{averaged_, max_courant_, peak_energy_, double(flow_steps_), double(air_)};
   for (const auto* list : {&impulse_, &start_velocity_, &force_sum_, &friction_sum_, &torque_sum_})
     for (const Vec3& v : *list) own.insert(own.end(), {v.x(), v.y(), v.z()});
   own.insert(own.end(), peak_speed_.begin(), peak_speed_.end());
   for (const Load& l : loads_)
     own.insert(own.end(), {l.force.x(), l.force.y(), l.force.z(), l.torque.x(), l.torque.y(), l.torque.z()});
-  return {own, particles_.state(), flow_ ? flow_->state_numbers() : std::vector<double>{},
-          coupling_ ? coupling_->state() : std::vector<double>{},
-          splitter_ ? splitter_->state() : std::vector<double>{}};
+  return own;
 }
 
-void CoupledModel::restore_numbers(const std::vector<std::vector<double>>& numbers, double time) {
-  if (numbers.size() != 5)
-    throw Error(fmt::format("the saved state has {} parts instead of 5", numbers.size()));
-  StateReader own(numbers[0], "model");
+void CoupledModel::restore_numbers(const StateNumbers& numbers, double time) {
+  restore_own(numbers_of(numbers, "sums"));
+  particles_.restore(numbers_of(numbers, "bodies"));
+  if (flow_) flow_->restore_numbers(numbers_of(numbers, "air"), time);
+  if (coupling_) coupling_->restore(numbers_of(numbers, "forces"));
+  if (splitter_) splitter_->restore(numbers_of(numbers, "verdicts"));
+}
+
+void CoupledModel::restore_own(const std::vector<double>& numbers) {
+  StateReader own(numbers, "model");
   for (double* v : {&averaged_, &max_courant_, &peak_energy_}) *v = own.number();
   flow_steps_ = static_cast<std::int64_t>(own.number());
   air_ = own.whole(0, 1) == 1;
@@ -290,10 +325,6 @@ void CoupledModel::restore_numbers(const std::vector<std::vector<double>>& numbe
   for (double& v : peak_speed_) v = own.number();
   for (Load& l : loads_) l.force = own.vec3(), l.torque = own.vec3();
   own.end();
-  particles_.restore(numbers[1]);
-  if (flow_) flow_->restore_numbers(numbers[2], time);
-  if (coupling_) coupling_->restore(numbers[3]);
-  if (splitter_) splitter_->restore(numbers[4]);
 }
 
 }  // namespace ejecta

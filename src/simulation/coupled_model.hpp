@@ -9,6 +9,7 @@
 #include "case/case.hpp"
 #include "coupling/resolved/resolved.hpp"
 #include "flow/model/flow_model.hpp"
+#include "simulation/model.hpp"
 #include "simulation/scene.hpp"
 
 namespace ejecta {
@@ -22,16 +23,36 @@ struct Operator {
 };
 
 /// A whole case: fluid, bodies, their coupling, the splitter. `step` is the time step; ejecta plan prints it.
-class CoupledModel {
+class CoupledModel : public Model {
  public:
   /// `note` is told when a jet has to be computed first.
   explicit CoupledModel(const Case& c, const Note& note = {});
+  CoupledModel(const Case& c, Inflow inflow);
   CoupledModel(const CoupledModel&) = delete;  // its operators hold it
 
-  double stable_dt(double time) const;
-  void advance(double time, double dt);
+  double stable_dt(double time) override;
+  void advance(const Step& step) override;
+  void advance(double time, double dt) { advance({time, dt, time + dt}); }
+  /// Times at which what enters the box has kinks, s.
+  std::vector<double> events() const override { return inflow_.events; }
+  /// The case's own end ("verdict", "rest") has come.
+  bool finished() const override;
+  bool conclude(const std::function<bool()>&, const Note&) override { return true; }
+  void require_finite(double time) const override;
+  std::int64_t cells() const override { return air_ ? grid_.cells() : 0; }
+  std::size_t bodies() const override { return particles_.bodies().size(); }
+  double courant() const override { return courant_; }
+  double busy_until() const override { return busy_until_; }
+  std::vector<OperatorTime> operator_times() const override;
+  std::vector<NamedField> state_fields() override;
+  StateNumbers state_numbers() const override;
+  void restore_numbers(const StateNumbers& numbers, double time) override;
+  nlohmann::ordered_json result(double time, std::int64_t steps, double wall_time,
+                                std::span<const OperatorTime> operators) const override;
+  std::optional<double> later_end(double time) const override;
+  std::vector<std::string> warnings() const override { return particles_.deep_dents(); }
+
   std::vector<Operator>& step() { return step_; }
-  std::vector<OperatorTime> operator_times() const;
 
   const Case& config() const { return case_; }
   const Grid& grid() const { return grid_; }
@@ -53,19 +74,8 @@ class CoupledModel {
   double peak_speed(std::size_t body) const { return peak_speed_[body]; }  ///< m/s
   std::int64_t flow_steps() const { return flow_steps_; }
   double max_courant() const { return max_courant_; }
-  double courant() const { return courant_; }
   /// The air is still being computed.
   bool air() const { return air_; }
-  /// The case's own end ("verdict", "rest") has come.
-  bool finished() const;
-  /// Times at which what enters the box has kinks, s.
-  const std::vector<double>& events() const { return inflow_.events; }
-  /// Throws DivergedError with the place when the flow is no longer finite.
-  void require_finite(double time) const;
-
-  std::vector<Field*> state_fields() { return flow_ ? flow_->state_fields() : std::vector<Field*>{}; }
-  std::vector<std::vector<double>> state_numbers() const;
-  void restore_numbers(const std::vector<std::vector<double>>& numbers, double time);
 
  private:
   CouplingSetup coupling_setup() const;
@@ -75,6 +85,8 @@ class CoupledModel {
   void watch_air(double time);
   double step_of_courses() const;
   double step_of_bodies(double time, double dt) const;
+  std::vector<double> own_state() const;
+  void restore_own(const std::vector<double>& numbers);
 
   const Case case_;  // copies of bodies written out
   Grid grid_;
@@ -91,7 +103,7 @@ class CoupledModel {
   std::vector<std::vector<Vec3>> undisturbed_;
   std::vector<Course::Pace> paces_;  // of prescribed bodies, over the whole run
   std::vector<double> peak_speed_;
-  double averaged_ = 0.0, max_courant_ = 0.0, courant_ = 0.0, peak_energy_ = 0.0;
+  double averaged_ = 0.0, max_courant_ = 0.0, courant_ = 0.0, peak_energy_ = 0.0, busy_until_ = 0.0;
   std::int64_t flow_steps_ = 0;
   bool air_ = true, resting_ = false;
 };

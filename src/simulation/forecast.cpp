@@ -112,7 +112,7 @@ CellCost cell_cost(const Case& c) {
   return laminar ? CellCost{26, 360.0} : CellCost{40, 480.0};
 }
 
-constexpr double state_fields = 10.0;  ///< in a checkpoint: velocity, face velocities, pressure, turbulence
+constexpr double kStateFields = 10.0;  ///< in a checkpoint: velocity, face velocities, pressure, turbulence
 
 double count_of(double interval, double end) {
   return interval > 0.0 ? std::floor(end / interval) + 1.0 : 0.0;
@@ -136,7 +136,7 @@ double disk_space(const Case& c, const Grid& grid, const Forecast& f) {
   if (c.output.report) bytes += page + 2.0 * frame * (c.output.slices_interval > 0.0 ? slices : 200.0);
   const bool checkpoints =
       c.checkpoint.every_steps > 0 || c.checkpoint.every_time > 0.0 || c.checkpoint.every_wall_time > 0.0;
-  return bytes + (checkpoints ? 2.0 * cells * state_fields * sizeof(Real) : 0.0);  // the last two are kept
+  return bytes + (checkpoints ? 2.0 * cells * kStateFields * sizeof(Real) : 0.0);  // the last two are kept
 }
 
 }  // namespace

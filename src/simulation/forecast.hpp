@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
@@ -34,5 +35,10 @@ double measured_bandwidth();
 /// scene_of.
 std::string check_report(const Case& c, const Scene& scene, const std::vector<Problem>& warnings,
                          double bandwidth);
+
+/// The same as `ejecta check --json` gives it (docs/files.md).
+nlohmann::ordered_json check_json(const Case& c, const Scene& scene, const std::vector<Problem>& warnings,
+                                  double bandwidth);
+nlohmann::ordered_json problem_json(const Problem& p);
 
 }  // namespace ejecta

@@ -9,7 +9,7 @@
 
 #include "base/text.hpp"
 #include "case/case.hpp"
-#include "simulation/coupled_model.hpp"
+#include "simulation/model.hpp"
 
 /// One run of a case: plain data in, plain data out. No terminal, no signals, nothing global: a program may
 /// run as many as it likes side by side, each with the bits that it has alone.
@@ -17,7 +17,7 @@ namespace ejecta {
 
 /// A run between two steps.
 struct Moment {
-  const CoupledModel& model;
+  const Model& model;
   double time = 0.0;  ///< s
   std::int64_t step = 0;
   double dt = 0.0;          ///< s, of the step that was taken; 0 before the first
@@ -63,6 +63,12 @@ struct Result {
 /// Runs the case to its end or until it is stopped. Throws InputError where the case or the directory does
 /// not allow it (an earlier run there is then as it was), DivergedError with the place and time.
 Result run(const Case& c, const Context& context = {});
+
+/// A case whose orifice drives a compressible flow is one of run_jet().
+bool is_jet_case(const Case& c);
+/// Computes the jet of a case from its nozzle, with everything that is recorded of it, and stores it as it
+/// crosses the plane `kept_at`, m above the orifice. Throws as run().
+Result run_jet(const Case& c, double kept_at, const Context& context = {});
 
 /// Of a run of this very case that came to its end in that directory; nothing where there is none.
 std::optional<Result> finished_run(const Case& c, const std::filesystem::path& directory);

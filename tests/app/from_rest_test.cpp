@@ -75,11 +75,11 @@ Outcome run(const Case& c, double interval = 0.0) {
   for (const double t : model.events()) clock.add_event(t);
   Outcome out;
   while (clock.time() < c.run.end_time) {
-    const double dt = clock.land_on_events(model.stable_dt(clock.time()));
-    model.advance(clock.time(), dt);
-    clock.tick(dt);
+    const Step step = clock.next(model.stable_dt(clock.time()));
+    model.advance(step);
+    clock.tick(step);
     // What the step has reached, not what it began with.
-    if (model.flow()) out.max_courant = std::max(out.max_courant, model.flow()->courant(dt));
+    if (model.flow()) out.max_courant = std::max(out.max_courant, model.flow()->courant(step.dt));
     if (++out.steps > 20000) throw Error("no end");
   }
   std::vector<double> values(model.flow()->quantities().size());
@@ -195,7 +195,7 @@ TEST(FromRest, NoNumberStopsTheRunAtOnce) {
   const Case c = parse_case(duct("incompressible", kBlown), "duct");
   CoupledModel model(c);
   model.advance(0.0, 1e-6);
-  (*model.state_fields()[0])(3, 0, 1) = std::numeric_limits<Real>::quiet_NaN();
+  (*model.state_fields()[0].field)(3, 0, 1) = std::numeric_limits<Real>::quiet_NaN();
   EXPECT_THROW(model.stable_dt(1e-6), DivergedError);
   EXPECT_THROW(model.advance(1e-6, 1e-6), DivergedError);
 }
@@ -215,7 +215,7 @@ TEST_P(FromRestWith, AResumedRunTakesTheSameSteps) {
   const auto numbers = whole.state_numbers();
   const auto from = whole.state_fields();
   const auto to = resumed.state_fields();
-  for (std::size_t f = 0; f < from.size(); ++f) *to[f] = *from[f];
+  for (std::size_t f = 0; f < from.size(); ++f) *to[f].field = *from[f].field;
   resumed.restore_numbers(numbers, t);
   EXPECT_EQ(resumed.state_numbers(), numbers);
   for (int n = 0; n < 5; ++n) {

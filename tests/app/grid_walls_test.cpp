@@ -52,9 +52,9 @@ double height_after(const Case& c) {
   Clock clock;
   clock.add_event(c.run.end_time);
   while (clock.time() < c.run.end_time) {
-    const double dt = clock.land_on_events(model.stable_dt(clock.time()));
-    model.advance(clock.time(), dt);
-    clock.tick(dt);
+    const Step step = clock.next(model.stable_dt(clock.time()));
+    model.advance(step);
+    clock.tick(step);
   }
   return model.particles().bodies()[0].position.z();
 }

@@ -233,10 +233,11 @@ Fate fate_of(const Drawn& d) {
   Clock clock;
   clock.add_event(c.run.end_time);
   for (int step = 0; step < 3 && clock.time() < c.run.end_time * (1 - 1e-12) && !model.finished(); ++step) {
-    const double dt = clock.land_on_events(model.stable_dt(clock.time()));
-    if (!(dt > 0.0) || !std::isfinite(dt)) throw Error(fmt::format("step {} of {} s", step, dt));
-    model.advance(clock.time(), dt);
-    clock.tick(dt);
+    const Step next = clock.next(model.stable_dt(clock.time()));
+    if (!(next.dt > 0.0) || !std::isfinite(next.dt))
+      throw Error(fmt::format("step {} of {} s", step, next.dt));
+    model.advance(next);
+    clock.tick(next);
     model.require_finite(clock.time());
     for (const Body& b : model.particles().bodies())
       if (!b.position.allFinite() || !b.velocity.allFinite() || !b.angular_velocity.allFinite())

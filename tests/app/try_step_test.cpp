@@ -55,8 +55,8 @@ void expect_same(Tank& a, Tank& b) {
     int differ = 0;
     for (int k = 0; k < a.grid.nz(); ++k)
       for (int j = 0; j < a.grid.ny(); ++j)
-        for (int i = 0; i < a.grid.nx(); ++i) differ += (*x[n])(i, j, k) != (*y[n])(i, j, k);
-    EXPECT_EQ(differ, 0) << "field " << n;
+        for (int i = 0; i < a.grid.nx(); ++i) differ += (*x[n].field)(i, j, k) != (*y[n].field)(i, j, k);
+    EXPECT_EQ(differ, 0) << x[n].name;
   }
   EXPECT_EQ(a.flow.ledger().displaced, b.flow.ledger().displaced);
   EXPECT_EQ(a.flow.ledger().impulse_on_solids, b.flow.ledger().impulse_on_solids);
@@ -82,7 +82,7 @@ TEST(TryStep, AResumedFlowGoesOnToTheSameBits) {
   resumed.ball = whole.ball;
   resumed.time = whole.time;
   const auto from = whole.flow.state(), to = resumed.flow.state();
-  for (std::size_t n = 0; n < from.size(); ++n) *to[n] = *from[n];
+  for (std::size_t n = 0; n < from.size(); ++n) *to[n].field = *from[n].field;
   resumed.flow.ledger() = whole.flow.ledger();
   resumed.flow.resume(whole.time);
   for (int n = 0; n < 8; ++n) {

@@ -108,7 +108,7 @@ epsilon = "= 2 * z + t"
   const Boundary inlet = make_boundary(c, grid, air, none, 0);
   EXPECT_TRUE(inlet.varies);
   EXPECT_NEAR(inlet.state({0, 2e-3, 11e-3}, 0.5).k, 11e-3, 1e-8);
-  EXPECT_NEAR(inlet.state({0, 2e-3, 11e-3}, 0.5).second, 22e-3 + 0.5, 1e-6);
+  EXPECT_NEAR(inlet.state({0, 2e-3, 11e-3}, 0.5).dissipation, 22e-3 + 0.5, 1e-6);
   EXPECT_NEAR(inlet.state({0, 2e-3, 1e-3}, 0.5).k, air.k, 1e-9) << "outside of the disc";
   Case open = c;
   open.boundary[1].state.k = "1 + y * t";
@@ -124,7 +124,7 @@ TEST(TurbulenceStates, LessThanNothingIsStillAir) {
   const StateFormula state(c.boundary[0].state, air);
   EXPECT_EQ(state.turbulence_at({0, 0, 0}, 0.0).k, 0.1);
   EXPECT_EQ(state.turbulence_at({0, 0, 0}, 0.1).k, air.k);
-  EXPECT_EQ(state.turbulence_at({0, 0, 0}, 0.1).second, air.second);
+  EXPECT_EQ(state.turbulence_at({0, 0, 0}, 0.1).dissipation, air.dissipation);
 }
 
 TEST(TurbulenceStates, AnInletOfGasHasItsProfile) {

@@ -15,9 +15,9 @@ TEST(Clock, LandsOnEventsAndNeverTakesATinyStep) {
   double least = 1.0;
   bool landed = false;
   while (clock.time() < 1.0) {
-    const double dt = clock.land_on_events(0.1);
-    least = std::min(least, dt);
-    clock.tick(dt);
+    const Step step = clock.next(0.1);
+    least = std::min(least, step.dt);
+    clock.tick(step);
     landed = landed || clock.time() == 0.25;
   }
   EXPECT_TRUE(landed);
@@ -34,9 +34,9 @@ TEST(Clock, EventsThatDifferByRoundingAreOne) {
     clock.add_event(0.0002 * 55);
     clock.add_event(0.001 * 11);
     while (clock.time() < 0.02) {
-      const double dt = clock.land_on_events(1e-4);
-      ASSERT_GT(dt, 0.9e-4) << clock.time();
-      clock.tick(dt);
+      const Step step = clock.next(1e-4);
+      ASSERT_GT(step.dt, 0.9e-4) << clock.time();
+      clock.tick(step);
     }
   }
 }
@@ -49,9 +49,10 @@ std::vector<double> steps_to(double end, double interval, const Asked& asked) {
   clock.add_event(end);
   std::vector<double> steps;
   while (clock.time() < end) {
-    steps.push_back(clock.land_on_events(asked(clock.time())));
-    EXPECT_LE(steps.back(), asked(clock.time()) * (1 + 1e-9));
-    clock.tick(steps.back());
+    const Step step = clock.next(asked(clock.time()));
+    EXPECT_LE(step.dt, asked(clock.time()) * (1 + 1e-9));
+    steps.push_back(step.dt);
+    clock.tick(step);
   }
   return steps;
 }
@@ -92,17 +93,17 @@ TEST(Clock, DenseEventsAreNotStored) {
   clock.add_events_every(1e-13, 0.0, 1.0);
   clock.add_events_every(1e-300, 0.5, 1.0);
   for (int n = 1; n < 1000; ++n) {
-    const double dt = clock.land_on_events(1e-3);
-    ASSERT_NEAR(dt, 1e-13, 1e-18);
-    clock.tick(dt);
+    const Step step = clock.next(1e-3);
+    ASSERT_NEAR(step.dt, 1e-13, 1e-18);
+    clock.tick(step);
   }
   clock.restore(0.75, 1000);  // where neighbouring events are nearer than neighbouring numbers
-  const double dt = clock.land_on_events(1e-3);
-  EXPECT_GT(dt, 0.0);
-  clock.tick(dt);
+  const Step step = clock.next(1e-3);
+  EXPECT_GT(step.dt, 0.0);
+  clock.tick(step);
   EXPECT_GT(clock.time(), 0.75);
   clock.restore(1.1, 1001);
-  EXPECT_EQ(clock.land_on_events(1e-3), 1e-3);
+  EXPECT_EQ(clock.next(1e-3).dt, 1e-3);
 }
 
 }  // namespace

@@ -115,7 +115,7 @@ TEST(BodiesInLiquid, ABodyThatMovesWithTheStreamLeavesItAlone) {
           b.state = [u](const Vec3&, double) {
             BoundaryState s;
             for (int d = 0; d < 3; ++d) s.velocity[std::size_t(d)] = static_cast<Real>(u[d]);
-            s.k = Real(1e-2), s.second = Real(0.1);
+            s.k = Real(1e-2), s.dissipation = Real(0.1);
             return s;
           };
         faces[1].kind = BoundaryKind::open;
@@ -316,7 +316,7 @@ struct Jet : Bodies {
       const double u = 100.0 * std::exp(-(x.x() * x.x() + x.y() * x.y()) / (0.005 * 0.005));
       s.velocity[2] = static_cast<Real>(u);
       s.k = static_cast<Real>(0.02 * u * u + 1e-3);
-      s.second = static_cast<Real>(0.09 * s.k * s.k / 0.01);
+      s.dissipation = static_cast<Real>(0.09 * s.k * s.k / 0.01);
       return s;
     };
     return f;

@@ -50,7 +50,7 @@ struct JetBox {
       const double u = 100.0 * std::exp(-(x.x() * x.x() + x.y() * x.y()) / (0.005 * 0.005));
       s.velocity[2] = static_cast<Real>(u);
       s.k = static_cast<Real>(0.05 * u * u + 1e-3);
-      s.second = static_cast<Real>(0.09 * s.k * s.k / 0.01);
+      s.dissipation = static_cast<Real>(0.09 * s.k * s.k / 0.01);
       s.prescribed = inlet == Inlet::open;
       return s;
     };

@@ -16,14 +16,14 @@ double settled_time(double stretching) {
   for (int n = 0; n < 1000; ++n) {
     SourcePoint p{};
     p.k = p.k_carried = static_cast<Real>(k);
-    p.second = p.second_carried = static_cast<Real>(epsilon);
+    p.dissipation = p.dissipation_carried = static_cast<Real>(epsilon);
     p.strain2 = static_cast<Real>(strain * strain);
     p.eddy_viscosity = static_cast<Real>(0.09 * k * k / epsilon);
     p.produced = p.eddy_viscosity * p.strain2;
     p.stretching = static_cast<Real>(stretching);
     const SourceResult r = advance_sources<false, true>(p, static_cast<Real>(dt));
     k = double(r.k);
-    epsilon = double(r.second);
+    epsilon = double(r.dissipation);
   }
   return strain * k / epsilon;
 }

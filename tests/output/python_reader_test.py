@@ -28,6 +28,9 @@ assert all(a.time < b.time for a, b in zip(frames, frames[1:]))
 last = frames[-1].poses[0]
 assert numpy.allclose(last[:3], body["final_position_m"]) and abs(numpy.linalg.norm(last[3:]) - 1) < 1e-12
 
+waiting = ejecta_run.Frame({"rasters": []}, {"time": 0.0, "bodies": [None, [0, 0, 0, 1, 0, 0, 0]], "slices": []})
+assert numpy.isnan(waiting.poses[0]).all() and waiting.poses[1][3] == 1, "a body that has not come yet"
+
 # The quantised slice and the field in full are the same air: compare in the plane y = 0 at 8 ms.
 times = run.times("slice-y0")
 index = int(numpy.argmin(abs(times - 8e-3)))

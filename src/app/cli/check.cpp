@@ -2,6 +2,7 @@
 
 #include <cstdio>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <optional>
 
 #include "app/cli/commands.hpp"
@@ -11,10 +12,22 @@
 #include "simulation/forecast.hpp"
 
 namespace ejecta {
+namespace {
+
+nlohmann::ordered_json problems_of(const InputError& e) {
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  if (const auto* error = dynamic_cast<const CaseError*>(&e))
+    for (const Problem& p : error->problems) list.push_back(problem_json(p));
+  else list.push_back(problem_json({.what = e.what()}));
+  return list;
+}
+
+}  // namespace
 
 void add_check(CLI::App& app, Action& action) {
   struct Options {
     std::vector<std::string> cases, overrides;
+    bool json = false;
   };
   CLI::App* command = app.add_subcommand(
       "check", "What a run will be: cells, steps, time, memory, disk, assumptions; runs nothing");
@@ -24,22 +37,27 @@ void add_check(CLI::App& app, Action& action) {
       ->type_name("KEY=VALUE")
       ->expected(1)
       ->take_all();
-  command->footer("Example:\n  ejecta check cases/paper/*.toml");
+  command->add_flag("--json", o->json, "For programs: a list of one object a case (docs/files.md)");
+  command->footer("Examples:\n  ejecta check cases/paper/*.toml\n  ejecta check my-case.toml --json");
   command->callback([o, &action] {
     action = [o] {
       const double bandwidth = measured_bandwidth();
+      nlohmann::ordered_json list = nlohmann::ordered_json::array();
       int code = exit_done;
       for (const std::string& path : o->cases) {
         try {
           std::vector<Problem> warnings;
           std::optional<Scene> scene;
           const Case c = load_checked(path, o->overrides, &warnings, &scene);
-          fmt::print("{}\n", check_report(c, *scene, warnings, bandwidth));
+          if (o->json) list.push_back(check_json(c, *scene, warnings, bandwidth));
+          else fmt::print("{}\n", check_report(c, *scene, warnings, bandwidth));
         } catch (const InputError& e) {
-          print_input_error(e);
           code = exit_bad_input;
+          if (o->json) list.push_back({{"case", path}, {"problems", problems_of(e)}});
+          else print_input_error(e);
         }
       }
+      if (o->json) fmt::print("{}\n", list.dump(2));
       return code;
     };
   });

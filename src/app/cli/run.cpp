@@ -66,6 +66,7 @@ void add_jet(CLI::App& app, Action& action) {
   CLI::App* command = app.add_subcommand("jet", "Computes only the jet and stores it for later runs");
   auto o = std::make_shared<RunCommand>();
   add_run_options(*command, *o);
+  command->add_flag("--resume", o->run.resume, "Continue from the last good checkpoint");
   command->add_flag("--sweep", o->run.sweep,
                     "Instead: the settled jets of jet.sweep_pressures and jet.sweep_velocities, and the "
                     "equivalent velocity of each pressure");
@@ -74,6 +75,7 @@ void add_jet(CLI::App& app, Action& action) {
       "--sweep");
   command->callback([o, &action] {
     action = [o] {
+      require_sense(o->run);
       o->run.overrides = o->input.overrides;
       return jet_case(load_and_warn(o->input, o->run.quiet), o->run);
     };

@@ -1,8 +1,12 @@
 #include "flow/godunov/boundary.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
+#include "base/error.hpp"
 #include "base/parallel.hpp"
 
 namespace ejecta::godunov {
@@ -72,9 +76,15 @@ Boundaries::Boundaries(const Grid& grid, const GasConstants& gas) : grid_(grid),
   conditions_.push_back(Condition{});  // 0: symmetry everywhere until set
 }
 
-int Boundaries::set_face(int face, const Condition& condition) {
-  const auto handle = static_cast<std::uint8_t>(conditions_.size());
+Boundaries::Handle Boundaries::keep(const Condition& condition) {
+  constexpr std::size_t most = std::numeric_limits<Handle>::max();
+  if (conditions_.size() > most) throw InputError(fmt::format("more than {} boundaries and patches", most));
   conditions_.push_back(condition);
+  return static_cast<Handle>(conditions_.size() - 1);
+}
+
+int Boundaries::set_face(int face, const Condition& condition) {
+  const Handle handle = keep(condition);
   Face& f = face_[static_cast<std::size_t>(face)];
   f.base = handle;
   std::fill(f.handle.begin(), f.handle.end(), handle);
@@ -82,8 +92,7 @@ int Boundaries::set_face(int face, const Condition& condition) {
 }
 
 int Boundaries::add_disc(int face, const Vec3& centre, double radius, const Condition& condition) {
-  const auto handle = static_cast<std::uint8_t>(conditions_.size());
-  conditions_.push_back(condition);
+  const Handle handle = keep(condition);
   const Across t = across(face / 2);
   Face& f = face_[static_cast<std::size_t>(face)];
   for (int b = 0; b < grid_.n(t.b); ++b)
@@ -116,7 +125,7 @@ void Boundaries::set_states(int face, const std::function<GasState(const Vec3&)>
 
 int Boundaries::cells_of(int face, int handle) const {
   const auto& cells = face_[static_cast<std::size_t>(face)].handle;
-  return static_cast<int>(std::count(cells.begin(), cells.end(), static_cast<std::uint8_t>(handle)));
+  return static_cast<int>(std::count(cells.begin(), cells.end(), static_cast<Handle>(handle)));
 }
 
 template <class Visit>
@@ -204,8 +213,8 @@ bool Boundaries::is_wall(int face) const {
 }
 
 bool Boundaries::holds_gas_back(int face) const {
-  const std::vector<std::uint8_t>& cells = face_[static_cast<std::size_t>(face)].handle;
-  return std::any_of(cells.begin(), cells.end(), [&](std::uint8_t handle) {
+  const std::vector<Handle>& cells = face_[static_cast<std::size_t>(face)].handle;
+  return std::any_of(cells.begin(), cells.end(), [&](Handle handle) {
     const BoundaryType type = conditions_[handle].type;
     return type == BoundaryType::wall || type == BoundaryType::moving_wall || type == BoundaryType::slip ||
            type == BoundaryType::total_pressure;

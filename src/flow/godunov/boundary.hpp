@@ -79,11 +79,14 @@ class Boundaries {
   bool holds_gas_back(int face) const;  ///< somewhere: a wall, an inlet while it is shut
 
  private:
+  using Handle = std::uint16_t;  ///< index of a condition, one a cell
+  /// Throws InputError where there are more than handles.
+  Handle keep(const Condition& condition);
   struct Face {
-    std::uint8_t base = 0;             ///< handle of the face itself
-    std::vector<std::uint8_t> handle;  ///< per cell of the face
-    std::vector<Primitive> outside;    ///< per cell, where set_states gave them
-    Real anchor = 0;                   ///< of ghost_states
+    Handle base = 0;                 ///< of the face itself
+    std::vector<Handle> handle;      ///< per cell of the face
+    std::vector<Primitive> outside;  ///< per cell, where set_states gave them
+    Real anchor = 0;                 ///< of ghost_states
   };
   template <class Visit>
   void for_each_face_cell(int face, bool ghosts, const Visit& visit) const;

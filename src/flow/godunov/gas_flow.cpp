@@ -118,12 +118,32 @@ void GasFlow::add_to_ledger(double seconds, const CutCells& cut) {
   }
 }
 
-std::vector<Field*> GasFlow::state() {
-  std::vector<Field*> fields;
-  for (Field& f : u_) fields.push_back(&f);
-  for (Field& f : w_) fields.push_back(&f);
-  fields.push_back(&eddy_viscosity_);
-  fields.push_back(&f1_);
+bool GasFlow::finite(Vec3* where) const {
+  for (int k = 0; k < grid_.nz(); ++k)
+    for (int j = 0; j < grid_.ny(); ++j)
+      for (int i = 0; i < grid_.nx(); ++i) {
+        const GasState s = at(i, j, k);
+        // Eddies faster than sound are no turbulence: the model has run away.
+        const bool runs_away = s.k * s.density > options_.gas.gamma * s.pressure;
+        if (s.density > 0.0 && s.pressure > 0.0 && !runs_away &&
+            std::isfinite(s.velocity.sum() + s.density + s.pressure))
+          continue;
+        if (where) *where = grid_.centre(i, j, k);
+        return false;
+      }
+  return true;
+}
+
+std::vector<NamedField> GasFlow::state() {
+  constexpr std::array kConserved{"density", "momentum_x", "momentum_y", "momentum_z",
+                                  "energy",  "rho_k",      "rho_e"};
+  constexpr std::array kPrimitive{"density_again", "velocity_x", "velocity_y", "velocity_z",
+                                  "pressure",      "k",          "e"};
+  std::vector<NamedField> fields;
+  for (std::size_t c = 0; c < kComponents; ++c) fields.push_back({kConserved[c], &u_[c]});
+  for (std::size_t c = 0; c < kComponents; ++c) fields.push_back({kPrimitive[c], &w_[c]});
+  fields.push_back({"eddy_viscosity", &eddy_viscosity_});
+  fields.push_back({"blending", &f1_});
   return fields;
 }
 

@@ -78,6 +78,9 @@ class GasFlow {
   /// One step without solids.
   void advance(double dt) { advance(dt, no_solids_); }
 
+  /// False as soon as a cell holds what no gas can be, or eddies faster than sound; `where` gets the first
+  /// such.
+  bool finite(Vec3* where = nullptr) const;
   /// Integral of a conserved component over the gas in the box (axisymmetric: the full circle).
   double total(Component c) const;
   Contents contents() const;
@@ -93,7 +96,7 @@ class GasFlow {
   const BoundaryLedger& ledger() const { return ledger_; }
   BoundaryLedger& ledger() { return ledger_; }
   /// Everything a resume needs besides the ledger.
-  virtual std::vector<Field*> state();
+  virtual std::vector<NamedField> state();
   virtual std::vector<double*> state_numbers() { return {}; }
   /// To be called after `state()` has been filled again.
   virtual void resume() {}

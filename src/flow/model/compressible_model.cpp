@@ -22,7 +22,7 @@ class CompressibleModel : public FlowModel {
       : case_(c), grid_(grid), inflow_(std::move(inflow)), formulas_(c, grid) {
     solver_ = solver_from_case(c, grid, inlets_);
     solver_->keep_ledger();
-    if (inflow_.at) let_in(0.0);
+    if (inflow_.at) set_jet_states(0.0);
     momentum_at_start_ = momentum();
     mass_at_start_ = solver_->total(kRho);
     energy_at_start_ = solver_->total(kP);
@@ -95,21 +95,7 @@ class CompressibleModel : public FlowModel {
                     double(z.volume[k]);
            });
   }
-  bool finite(Vec3* where) const override {
-    for (int k = 0; k < grid_.nz(); ++k)
-      for (int j = 0; j < grid_.ny(); ++j)
-        for (int i = 0; i < grid_.nx(); ++i) {
-          const GasState s = solver_->at(i, j, k);
-          // Eddies faster than sound are no turbulence: the model has run away.
-          const bool tame = !(s.k * s.density > case_.fluid.gamma * s.pressure);
-          if (s.density > 0.0 && s.pressure > 0.0 && tame &&
-              std::isfinite(s.velocity.sum() + s.density + s.pressure))
-            continue;
-          if (where) *where = grid_.centre(i, j, k);
-          return false;
-        }
-    return true;
-  }
+  bool finite(Vec3* where) const override { return solver_->finite(where); }
 
   std::vector<Figure> report() const override {
     const BoundaryLedger& l = solver_->ledger();
@@ -142,12 +128,12 @@ class CompressibleModel : public FlowModel {
       return {
           {"flow.compressible_piso",
            "U = U - dt div(q U_up), q and p implicit in sound: dp/(K dt^2) - div(grad dp/rho) = -div q/dt "
-           "(Eqs 1-3 with energy)",
+           "(mass, momentum, energy)",
            seconds_, calls_}};
-    return {{"flow.godunov", "U = U - dt div F(U), HLLC on MUSCL states, two stages (Eqs 1-3 with energy)",
+    return {{"flow.godunov", "U = U - dt div F(U), HLLC on MUSCL states, two stages (mass, momentum, energy)",
              seconds_, calls_}};
   }
-  std::vector<Field*> state_fields() override { return solver_->state(); }
+  std::vector<NamedField> state_fields() override { return solver_->state(); }
   std::vector<double> state_numbers() const override {
     const BoundaryLedger& l = solver_->ledger();
     std::vector<double> all{l.mass,
@@ -197,7 +183,7 @@ class CompressibleModel : public FlowModel {
  private:
   void set_boundaries(double time) {
     if (inflow_.supply) drive(*solver_, inlets_, inflow_.supply(time));
-    if (inflow_.at) let_in(time);
+    if (inflow_.at) set_jet_states(time);
     if (formulas_.vary()) formulas_.apply(time, *solver_);
   }
   void move(double time, double dt, CutCells& solids) {
@@ -223,7 +209,7 @@ class CompressibleModel : public FlowModel {
   /// The Courant number that a step without bodies would reach. What is kept is all that a resume needs.
   double try_step(double time, double dt) {
     std::vector<Field> kept;
-    for (const Field* f : solver_->state()) kept.push_back(*f);
+    for (const NamedField& f : solver_->state()) kept.push_back(*f.field);
     std::vector<double> numbers;
     for (const double* v : solver_->state_numbers()) numbers.push_back(*v);
     const BoundaryLedger ledger = solver_->ledger();
@@ -236,7 +222,7 @@ class CompressibleModel : public FlowModel {
     } catch (const DivergedError&) {  // much too long
     }
     std::size_t n = 0;
-    for (Field* f : solver_->state()) *f = kept[n++];
+    for (const NamedField& f : solver_->state()) *f.field = kept[n++];
     n = 0;
     for (double* v : solver_->state_numbers()) *v = numbers[n++];
     solver_->ledger() = ledger;
@@ -250,7 +236,7 @@ class CompressibleModel : public FlowModel {
   /// with the same momentum; here rho w^2 is kept, and the total temperature is that of the ambient, of which
   /// a jet some tens of orifices away consists (Crocco: it is even where the reservoir has it too): w^2 = M R
   /// T0 / (p + M R/(2 cp)), M = rho_a w_a^2.
-  void let_in(double time) {
+  void set_jet_states(double time) {
     const Gas& gas = solver_->options().gas;
     const double r = gas.gas_constant, cp = gas.specific_heat_pressure();
     const double pressure = case_.environment.pressure, total = case_.environment.temperature;

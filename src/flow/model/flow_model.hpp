@@ -48,7 +48,7 @@ class FlowModel {
   /// Wall time of every operator so far.
   virtual std::vector<OperatorTime> operators() const = 0;
   /// Everything a resume needs.
-  virtual std::vector<Field*> state_fields() = 0;
+  virtual std::vector<NamedField> state_fields() = 0;
   virtual std::vector<double> state_numbers() const = 0;
   virtual void restore_numbers(std::span<const double> numbers, double time) = 0;
 };

@@ -64,7 +64,7 @@ class IncompressibleModel : public FlowModel {
                                scalar_field("pressure", flow_->pressure_field().view(), still_.density)};
     if (const TwoEquation* t = flow_->turbulence()) {
       all.push_back(scalar_field("k", t->k().view()));
-      all.push_back(scalar_field(still_.omega ? "omega" : "epsilon", t->second().view()));
+      all.push_back(scalar_field(still_.omega ? "omega" : "epsilon", t->dissipation().view()));
       all.push_back(scalar_field("eddy_viscosity", t->eddy_viscosity()));
     }
     return all;
@@ -117,8 +117,8 @@ class IncompressibleModel : public FlowModel {
     const FlowTimes& t = flow_->times();
     return {
         {"flow.boundaries", "states of the boundaries into ghost cells", t.boundaries, 0},
-        {"flow.momentum_predictor",
-         "u* = u + dt [-div(q u) + div(2 nu_eff S) - grad p]  (Eq. 2), two Heun stages", t.momentum, 0},
+        {"flow.momentum_predictor", "u* = u + dt [-div(q u) + div(2 nu_eff S) - grad p], two Heun stages",
+         t.momentum, 0},
         {"flow.face_velocities", "q* = mean(u*) + dt (mean(grad p) - grad p), r = div q* / dt", t.faces, 0},
         {"flow.pressure", "div grad phi = r, exact by fast diagonalisation", t.pressure, 0},
         {"flow.correction", "q -= dt grad phi, u -= dt grad phi, p += phi", t.correction, 0},
@@ -126,7 +126,7 @@ class IncompressibleModel : public FlowModel {
         {"flow.ledger", "momentum and mass through the boundaries", t.ledger, 0}};
   }
 
-  std::vector<Field*> state_fields() override { return flow_->state(); }
+  std::vector<NamedField> state_fields() override { return flow_->state(); }
   std::vector<double> state_numbers() const override {
     const FlowLedger& l = flow_->ledger();
     std::vector<double> n;
@@ -217,13 +217,13 @@ class IncompressibleModel : public FlowModel {
           .first->second;
     };
     if (TwoEquation* t = flow_->turbulence()) {
-      t->initialise(still_.k, still_.second);
+      t->initialise(still_.k, still_.dissipation);
       for (int k = 0; k < grid_.nz(); ++k)
         for (int j = 0; j < grid_.ny(); ++j)
           for (int i = 0; i < grid_.nx(); ++i) {
             const Vec3 x = grid_.centre(i, j, k);
             const StateFormula::Turbulence at = start_at(x).formula.turbulence_at(x, 0.0);
-            t->set_at(i, j, k, at.k, at.second);
+            t->set_at(i, j, k, at.k, at.dissipation);
           }
     }
     const auto velocity = [&](const Vec3& x) { return start_at(x).formula.at(x, 0.0); };

@@ -15,7 +15,7 @@ BoundaryState jet_state(const Grid& grid, const StillAir& air, const Inflow& inf
   const double k = std::max(jet.k, air.k);
   const double epsilon = jet.k > air.k ? jet.epsilon : 0.09 * k * k / air.nu;
   s.k = static_cast<Real>(k);
-  s.second = static_cast<Real>(air.omega ? epsilon / (0.09 * k) : epsilon);
+  s.dissipation = static_cast<Real>(air.omega ? epsilon / (0.09 * k) : epsilon);
   return s;
 }
 
@@ -26,7 +26,7 @@ StillAir::StillAir(const Case& c)
       nu(c.fluid.viscosity / c.fluid.density),
       omega(c.flow.turbulence == TurbulenceModel::k_omega_sst),
       k(1e-4),
-      second(omega ? k / nu : 0.09 * k * k / nu) {}
+      dissipation(omega ? k / nu : 0.09 * k * k / nu) {}
 
 StateFormula::StateFormula(const StateSpec& s, const StillAir& air) : still_(air) {
   if (s.velocity)
@@ -41,7 +41,7 @@ StateFormula::StateFormula(const StateSpec& s, const StillAir& air) : still_(air
 }
 
 StateFormula::Turbulence StateFormula::turbulence_at(const Vec3& x, double t) const {
-  Turbulence s{still_.k, still_.second};
+  Turbulence s{still_.k, still_.dissipation};
   // A constant keeps its meaning: k = 0 lets the turbulence inside through.
   const auto value = [&](const Expression& f, double still) {
     const double v = f(x.x(), x.y(), x.z(), t);
@@ -50,7 +50,7 @@ StateFormula::Turbulence StateFormula::turbulence_at(const Vec3& x, double t) co
   if (k_) s.k = value(*k_, still_.k);
   if (epsilon_) {
     const double epsilon = value(*epsilon_, 0.09 * still_.k * still_.k / still_.nu);
-    s.second = still_.omega ? epsilon / (0.09 * s.k) : epsilon;
+    s.dissipation = still_.omega ? epsilon / (0.09 * s.k) : epsilon;
   }
   return s;
 }
@@ -62,7 +62,7 @@ Boundary make_boundary(const Case& c, const Grid& grid, const StillAir& air, con
   b.varies = formula.varies;
   const auto with_turbulence = [](BoundaryState s, const StateFormula::Turbulence& turbulence) {
     s.k = static_cast<Real>(turbulence.k);
-    s.second = static_cast<Real>(turbulence.second);
+    s.dissipation = static_cast<Real>(turbulence.dissipation);
     return s;
   };
   std::function<BoundaryState(const Vec3&, double)> outside;  // of an open face, apart from discs in it

@@ -15,9 +15,9 @@ namespace ejecta {
 /// one.
 struct StillAir {
   explicit StillAir(const Case& c);
-  double density, nu;  ///< kg/m3, m2/s
-  bool omega;          ///< the second turbulence variable is omega (1/s), not epsilon (m2/s3)
-  double k, second;    ///< m2/s2, see omega
+  double density, nu;     ///< kg/m3, m2/s
+  bool omega;             ///< dissipation is told by omega (1/s), not epsilon (m2/s3)
+  double k, dissipation;  ///< m2/s2, see omega
 };
 
 /// Compiled state of a boundary, region or exact solution.
@@ -31,7 +31,7 @@ struct StateFormula {
             velocity[2](x.x(), x.y(), x.z(), t)};
   }
   struct Turbulence {
-    double k, second;  ///< see StillAir
+    double k, dissipation;  ///< see StillAir
   };
   /// What a formula makes less than nothing, or no number of, counts as still air.
   Turbulence turbulence_at(const Vec3& x, double t) const;

@@ -239,10 +239,10 @@ void Compressible::advance(double dt, CutCells& cut) {
   ledger().displaced += given.displaced;
 }
 
-std::vector<Field*> Compressible::state() {
-  std::vector<Field*> fields = GasFlow::state();
-  fields.push_back(&acoustic_.change());
-  fields.push_back(&cut_gas_.carried());
+std::vector<NamedField> Compressible::state() {
+  std::vector<NamedField> fields = GasFlow::state();
+  fields.push_back({"pressure_change", &acoustic_.change()});
+  fields.push_back({"carried", &cut_gas_.carried()});
   return fields;
 }
 

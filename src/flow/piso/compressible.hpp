@@ -26,7 +26,7 @@ class Compressible : public godunov::GasFlow {
   double stable_dt(double courant) override;
   using GasFlow::advance;
   void advance(double dt, CutCells& cut) override;
-  std::vector<Field*> state() override;
+  std::vector<NamedField> state() override;
   std::vector<double*> state_numbers() override;
   void resume() override { cut_gas_.resume(); }
   int iterations() const { return acoustic_.iterations(); }  ///< of the last step's pressure equation

@@ -114,10 +114,10 @@ void CutGas::advance_turbulence(const CutCells& cut, bool sst, const Block& befo
       const SourcePoint p{k, e, k, e, 0, 0, nut, 0, Real(1), 0};
       const SourceResult r = advance_wall_sources<model>(grid_, cut, c, velocity, p, nu, dt);
       w[kK](c.i, c.j, c.k) = r.k;
-      w[kE](c.i, c.j, c.k) = r.second;
+      w[kE](c.i, c.j, c.k) = r.dissipation;
       u[kK](c.i, c.j, c.k) = rho * r.k;
-      u[kE](c.i, c.j, c.k) = rho * r.second;
-      eddy_viscosity(c.i, c.j, c.k) = rho * wall_eddy_viscosity<model>(r.k, r.second, nu);
+      u[kE](c.i, c.j, c.k) = rho * r.dissipation;
+      eddy_viscosity(c.i, c.j, c.k) = rho * wall_eddy_viscosity<model>(r.k, r.dissipation, nu);
       if (model) f1(c.i, c.j, c.k) = 1;
     });
   };

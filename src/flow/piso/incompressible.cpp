@@ -264,10 +264,13 @@ void Incompressible::book_pressure(ConstFieldView p, double weight, double dt) {
       weight * dt * setup_.density * (boundary_pressure(grid_, p) - cut_flow_.pressure_on_closed(p));
 }
 
-std::vector<Field*> Incompressible::state() {
-  std::vector<Field*> all{&u_[0], &u_[1], &u_[2], &q_[0], &q_[1], &q_[2], &p_, &cut_flow_.carried_field()};
+std::vector<NamedField> Incompressible::state() {
+  std::vector<NamedField> all{{"velocity_x", &u_[0]},      {"velocity_y", &u_[1]},
+                              {"velocity_z", &u_[2]},      {"face_velocity_x", &q_[0]},
+                              {"face_velocity_y", &q_[1]}, {"face_velocity_z", &q_[2]},
+                              {"pressure", &p_},           {"carried", &cut_flow_.carried_field()}};
   if (turbulence_)
-    for (Field* f : turbulence_->state()) all.push_back(f);
+    for (const NamedField& f : turbulence_->state()) all.push_back(f);
   return all;
 }
 

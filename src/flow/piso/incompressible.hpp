@@ -95,8 +95,8 @@ class Incompressible {
     boundaries_.update(time);
     cut_flow_.resume();
   }
-  /// Everything a resume needs, in a fixed order.
-  std::vector<Field*> state();
+  /// Everything a resume needs.
+  std::vector<NamedField> state();
 
  private:
   BoundaryFlow predict(double a, double b, double time, Real dt, CutCells& cut, double weight);

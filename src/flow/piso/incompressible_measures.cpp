@@ -100,15 +100,15 @@ double Incompressible::stable_dt(double courant, double last_dt, double most) {
 /// acceleration: twice, because bodies, of which it knows nothing, hasten what goes around them.
 double Incompressible::try_step(double time, double dt) {
   std::vector<Field> kept;
-  for (const Field* f : state()) kept.push_back(*f);
+  for (const NamedField& f : state()) kept.push_back(*f.field);
   const FlowLedger ledger = ledger_;
   const FlowTimes times = times_;
   CutCells none;
   advance(time, dt, none);
   const double reached = courant(dt);
   for (std::size_t c = 0; c < 3; ++c) std::swap(u_old_[c], u_[c]);
-  const std::vector<Field*> all = state();
-  for (std::size_t n = 0; n < all.size(); ++n) *all[n] = kept[n];
+  const std::vector<NamedField> all = state();
+  for (std::size_t n = 0; n < all.size(); ++n) *all[n].field = kept[n];
   for (std::size_t c = 0; c < 3; ++c)
     for (std::size_t n = 0; n < u_[c].size(); ++n)
       u_old_[c].data()[n] = Real(3) * u_[c].data()[n] - Real(2) * u_old_[c].data()[n];

@@ -13,7 +13,7 @@ void TwoEquation::advance_cut_cells(const CutCells& cut, const std::array<ConstF
   for_each_index(static_cast<int>(cut.cells.size()), [&](int n) {
     const CutCell& c = cut.cells[static_cast<std::size_t>(n)];
     if (c.carrier != n) return;
-    const Real k0 = k_(c.i, c.j, c.k), s0 = second_(c.i, c.j, c.k), nut = nut_(c.i, c.j, c.k);
+    const Real k0 = k_(c.i, c.j, c.k), s0 = dissipation_(c.i, c.j, c.k), nut = nut_(c.i, c.j, c.k);
     Real balance_k = 0, balance_s = 0;
     for_each_open_face(grid_, cut, c,
                        [&](const CutCell&, int d, const std::array<int, 3>& face, const std::array<int, 3>&,
@@ -42,7 +42,7 @@ void TwoEquation::advance_cut_cells(const CutCells& cut, const std::array<ConstF
                                    (nu_ + sigma * eddy) * (p[0] - p[-step]) * f.inv_here);
                          };
                          balance_k += through(k_, k0, sigma_k);
-                         balance_s += through(second_, s0, sigma_s);
+                         balance_s += through(dissipation_, s0, sigma_s);
                        });
     const Real by_volume = dt / (c.carried * static_cast<Real>(grid_.volume(c.i, c.j, c.k)));
     SourcePoint p{k0, s0, k0 - by_volume * balance_k, s0 - by_volume * balance_s, 0, 0, nut, 0, 0, 0};
@@ -50,12 +50,12 @@ void TwoEquation::advance_cut_cells(const CutCells& cut, const std::array<ConstF
     const SourceResult r = sst ? advance_wall_sources<true>(grid_, cut, c, u, p, nu_, dt)
                                : advance_wall_sources<false>(grid_, cut, c, u, p, nu_, dt);
     k_new_(c.i, c.j, c.k) = increments ? r.k - k0 : positive_sum(k0, r.k - k0);
-    second_new_(c.i, c.j, c.k) = increments ? r.second - s0 : positive_sum(s0, r.second - s0);
+    dissipation_new_(c.i, c.j, c.k) = increments ? r.dissipation - s0 : positive_sum(s0, r.dissipation - s0);
   });
   for_each_index(static_cast<int>(cut.ghosts.size()), [&](int n) {
     const GhostCell& g = cut.ghosts[static_cast<std::size_t>(n)];
     k_new_(g.i, g.j, g.k) = increments ? Real(0) : k_(g.i, g.j, g.k);
-    second_new_(g.i, g.j, g.k) = increments ? Real(0) : second_(g.i, g.j, g.k);
+    dissipation_new_(g.i, g.j, g.k) = increments ? Real(0) : dissipation_(g.i, g.j, g.k);
   });
 }
 
@@ -64,12 +64,12 @@ void TwoEquation::finish_cut_cells(const CutCells& cut) {
   for_each_index(static_cast<int>(cut.cells.size()), [&](int n) {
     const CutCell& c = cut.cells[static_cast<std::size_t>(n)];
     if (c.carrier != n) return;
-    const Real k = k_(c.i, c.j, c.k), second = second_(c.i, c.j, c.k);
-    nut_(c.i, c.j, c.k) =
-        sst ? wall_eddy_viscosity<true>(k, second, nu_) : wall_eddy_viscosity<false>(k, second, nu_);
+    const Real k = k_(c.i, c.j, c.k), dissipation = dissipation_(c.i, c.j, c.k);
+    nut_(c.i, c.j, c.k) = sst ? wall_eddy_viscosity<true>(k, dissipation, nu_)
+                              : wall_eddy_viscosity<false>(k, dissipation, nu_);
     if (sst) f1_(c.i, c.j, c.k) = Real(1);
   });
-  for (Field* f : {&k_, &second_, &nut_, &f1_}) extend_to_ghosts(cut, f->view(), ghost_values_);
+  for (Field* f : {&k_, &dissipation_, &nut_, &f1_}) extend_to_ghosts(cut, f->view(), ghost_values_);
   for_each_index(static_cast<int>(cut.ghosts.size()), [&](int n) {
     const GhostCell& g = cut.ghosts[static_cast<std::size_t>(n)];
     if (g.donors == 0) nut_(g.i, g.j, g.k) = 0;  // deep inside

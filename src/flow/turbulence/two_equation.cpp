@@ -80,9 +80,9 @@ struct ScalarFlux {
 
 /// Where a transport step writes.
 struct ScalarOut {
-  FieldView k, second, nut, f1;
-  bool
-      unfinished;  ///< k and second are increments still to be smoothed: nu_t is taken from what they are now
+  FieldView k, dissipation, nut, f1;
+  bool unfinished;  ///< k and dissipation are increments still to be smoothed: nu_t is taken from what they
+                    ///< are now
 };
 
 template <bool kSst, bool kRound>
@@ -95,7 +95,7 @@ void transport(const Grid& grid, const ScalarFlux<kSst>& face, const std::array<
     const Real *old_k = face.value[0].row(j, k), *old_second = face.value[1].row(j, k),
                *eddy = face.nut.row(j, k);
     const Real* blending = kSst ? face.f1.row(j, k) : nullptr;
-    Real *out_k = out.k.row(j, k), *out_second = out.second.row(j, k), *out_nut = out.nut.row(j, k);
+    Real *out_k = out.k.row(j, k), *out_dissipation = out.dissipation.row(j, k), *out_nut = out.nut.row(j, k);
     Real* out_f1 = kSst ? out.f1.row(j, k) : nullptr;
     const Real* from_solid = kSst ? solid_distance.row(j, k) : nullptr;
     const Real nu = face.nu, *distance_x = wall[0].data();
@@ -123,9 +123,9 @@ void transport(const Grid& grid, const ScalarFlux<kSst>& face, const std::array<
             if constexpr (kRound) p.stretching = vortex_stretching(v);
             const auto [k1, s1] = advance_sources<kSst, kRound>(p, dt);
             out_k[i] = unfinished ? k1 - k0 : positive_sum(k0, k1 - k0);
-            out_second[i] = unfinished ? s1 - s0 : positive_sum(s0, s1 - s0);
+            out_dissipation[i] = unfinished ? s1 - s0 : positive_sum(s0, s1 - s0);
             const Real rate_of_strain = std::sqrt(strain2), kn = unfinished ? k0 : out_k[i],
-                       sn = unfinished ? s0 : out_second[i];
+                       sn = unfinished ? s0 : out_dissipation[i];
             if constexpr (kSst) {
               using namespace k_omega_sst;
               const Real d = std::min(std::min(distance_x[i], distance_jk), from_solid[i]);
@@ -153,25 +153,26 @@ TwoEquation::TwoEquation(const Grid& grid, TwoEquationModel model, bool round_je
       round_jet_(round_jet_correction),
       nu_(static_cast<Real>(viscosity)),
       k_(grid.make_field()),
-      second_(grid.make_field()),
+      dissipation_(grid.make_field()),
       nut_(grid.make_field()),
       f1_(grid.make_field()),
       k_new_(grid.make_field()),
-      second_new_(grid.make_field()),
+      dissipation_new_(grid.make_field()),
       nut_new_(grid.make_field()),
       f1_new_(grid.make_field()),
       solid_distance_(grid) {
-  initialise(kMinimalK, kMinimalSecond);
+  initialise(kMinimalK, kMinimalDissipation);
 }
 
-void TwoEquation::initialise(double k, double second) {
+void TwoEquation::initialise(double k, double dissipation) {
   for (Field* f : {&k_, &k_new_}) f->fill(std::max(static_cast<Real>(k), kMinimalK));
-  for (Field* f : {&second_, &second_new_}) f->fill(std::max(static_cast<Real>(second), kMinimalSecond));
+  for (Field* f : {&dissipation_, &dissipation_new_})
+    f->fill(std::max(static_cast<Real>(dissipation), kMinimalDissipation));
 }
 
-void TwoEquation::set_at(int i, int j, int k_index, double k, double second) {
+void TwoEquation::set_at(int i, int j, int k_index, double k, double dissipation) {
   k_(i, j, k_index) = std::max(static_cast<Real>(k), kMinimalK);
-  second_(i, j, k_index) = std::max(static_cast<Real>(second), kMinimalSecond);
+  dissipation_(i, j, k_index) = std::max(static_cast<Real>(dissipation), kMinimalDissipation);
 }
 
 void TwoEquation::measure_walls(const Boundaries& b) {
@@ -209,9 +210,9 @@ void TwoEquation::apply_walls() {
         const Real y_plus = wall_law::kQuarterCmu * std::sqrt(k) * y / nu_;
         const Real on_wall = nu_ * (y_plus / wall_law::u_plus(y_plus, Real(0)) - Real(1));
         at(nut_, a, bb, ghost) = Real(2) * on_wall - at(nut_, a, bb, cell);
-        at(second_, a, bb, cell) = model_ == TwoEquationModel::k_epsilon
-                                       ? wall_law::dissipation(k, y, nu_)
-                                       : wall_law::specific_dissipation(k, y, nu_);
+        at(dissipation_, a, bb, cell) = model_ == TwoEquationModel::k_epsilon
+                                            ? wall_law::dissipation(k, y, nu_)
+                                            : wall_law::specific_dissipation(k, y, nu_);
       }
     });
   }
@@ -222,12 +223,12 @@ void TwoEquation::advance(const Boundaries& b, const std::array<ConstFieldView, 
                           const IncrementSmoother* smoother) {
   if (wall_distance_[0].empty()) measure_walls(b);
   if (model_ == TwoEquationModel::k_omega_sst) solid_distance_.measure(cut);
-  b.fill_turbulence(k_.view(), second_.view(), q);
+  b.fill_turbulence(k_.view(), dissipation_.view(), q);
   const std::array<ConstFieldView, 3> faces{q[0], q[1], q[2]};
-  const ScalarOut out{k_new_.view(), second_new_.view(), nut_new_.view(), f1_new_.view(),
+  const ScalarOut out{k_new_.view(), dissipation_new_.view(), nut_new_.view(), f1_new_.view(),
                       smoother != nullptr};
   const auto run = [&](auto sst, auto round) {
-    const ScalarFlux<sst> face{{k_.view(), second_.view()},
+    const ScalarFlux<sst> face{{k_.view(), dissipation_.view()},
                                nut_.view(),
                                f1_.view(),
                                faces,
@@ -242,10 +243,11 @@ void TwoEquation::advance(const Boundaries& b, const std::array<ConstFieldView, 
   advance_cut_cells(cut, u, q, dt, smoother != nullptr);
   if (smoother) {
     smoother->apply(k_new_.view(), {k_.view(), Real(1), k_.view(), Real(0), true});
-    smoother->apply(second_new_.view(), {second_.view(), Real(1), second_.view(), Real(0), true});
+    smoother->apply(dissipation_new_.view(),
+                    {dissipation_.view(), Real(1), dissipation_.view(), Real(0), true});
   }
   std::swap(k_, k_new_);
-  std::swap(second_, second_new_);
+  std::swap(dissipation_, dissipation_new_);
   std::swap(nut_, nut_new_);
   std::swap(f1_, f1_new_);
   finish_cut_cells(cut);

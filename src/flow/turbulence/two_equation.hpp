@@ -18,8 +18,8 @@ class TwoEquation {
  public:
   TwoEquation(const Grid& grid, TwoEquationModel model, bool round_jet_correction, double viscosity);
 
-  void initialise(double k, double second);
-  void set_at(int i, int j, int k_index, double k, double second);
+  void initialise(double k, double dissipation);
+  void set_at(int i, int j, int k_index, double k, double dissipation);
   using WallDistance = std::array<std::vector<Real>, 3>;
 
   /// One step; u and q are the velocities at its end, with filled ghosts. dt = 0 only sets nu_t.
@@ -28,9 +28,11 @@ class TwoEquation {
 
   ConstFieldView eddy_viscosity() const { return nut_.view(); }
   const Field& k() const { return k_; }
-  const Field& second() const { return second_; }
+  const Field& dissipation() const { return dissipation_; }
   /// Everything a resume needs.
-  std::array<Field*, 4> state() { return {&k_, &second_, &nut_, &f1_}; }
+  std::array<NamedField, 4> state() {
+    return {{{"k", &k_}, {"e", &dissipation_}, {"eddy_viscosity", &nut_}, {"blending", &f1_}}};
+  }
 
  private:
   void apply_walls();
@@ -44,7 +46,7 @@ class TwoEquation {
   TwoEquationModel model_;
   bool round_jet_;
   Real nu_;
-  Field k_, second_, nut_, f1_, k_new_, second_new_, nut_new_, f1_new_;
+  Field k_, dissipation_, nut_, f1_, k_new_, dissipation_new_, nut_new_, f1_new_;
   std::array<bool, 6> is_wall_{};
   std::vector<Real> ghost_values_;  // scratch
   SolidDistance solid_distance_;    // SST

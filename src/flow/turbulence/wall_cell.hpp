@@ -42,21 +42,22 @@ SourceResult advance_wall_sources(const Grid& grid, const CutCells& cut, const C
   p.produced =
       (Real(1) - share) * p.eddy_viscosity * p.strain2 + (area > Real(0) ? share * at_wall / area : Real(0));
   p.k_carried = positive_sum(p.k, p.k_carried - p.k);
-  p.second_carried = positive_sum(p.second, p.second_carried - p.second);
+  p.dissipation_carried = positive_sum(p.dissipation, p.dissipation_carried - p.dissipation);
   SourceResult r = advance_sources<kSst, false>(p, dt);
   // Its wall rules the dissipation of a cell at the rate of its turbulence, at once where it runs all across.
-  const Real at_wall_second =
+  const Real at_wall_dissipation =
       kSst ? wall_law::specific_dissipation(r.k, y, nu) : wall_law::dissipation(r.k, y, nu);
-  const Real turnover = kSst ? k_omega_sst::kBetaStar * at_wall_second : at_wall_second / r.k;
+  const Real turnover = kSst ? k_omega_sst::kBetaStar * at_wall_dissipation : at_wall_dissipation / r.k;
   const Real pull = dt * turnover * share / std::max(Real(1) - share, Real(1e-6));
-  r.second = std::max((r.second + pull * at_wall_second) / (Real(1) + pull), kMinimalSecond);
+  r.dissipation =
+      std::max((r.dissipation + pull * at_wall_dissipation) / (Real(1) + pull), kMinimalDissipation);
   return r;
 }
 
 /// nu_t of a carrier, m2/s: that of the law of the wall where k and its dissipation are in equilibrium.
 template <bool kSst>
-Real wall_eddy_viscosity(Real k, Real second, Real nu) {
-  const Real nut = kSst ? k / second : k_epsilon::kCmu * k * k / second;
+Real wall_eddy_viscosity(Real k, Real dissipation, Real nu) {
+  const Real nut = kSst ? k / dissipation : k_epsilon::kCmu * k * k / dissipation;
   return std::min(nut, kLargestViscosityRatio * nu);
 }
 

@@ -1,4 +1,4 @@
-#include "app/jet_figures.hpp"
+#include "simulation/jet_figures.hpp"
 
 #include <fmt/format.h>
 
@@ -6,6 +6,11 @@
 #include <cmath>
 
 namespace ejecta {
+
+double far_field_from(const Case& c) {
+  constexpr double kOrifices = 25.0;
+  return c.jet.far_field_from > 0.0 ? c.jet.far_field_from : kOrifices * c.valve.orifice_diameter;
+}
 
 output::Figure centreline_figure(const std::string& title) {
   return {title, "z [mm]", "total gauge pressure [kPa]"};
@@ -68,12 +73,9 @@ output::Picture schlieren_picture(const JetModel& jet) {
 }
 
 std::string probe_title(const ProbeSpec& probe) {
-  constexpr double kSame = 0.1e-3;
-  for (const auto& [offset, figure] : {std::pair{0.0, 9}, {4e-3, 13}, {8e-3, 14}, {10e-3, 15}})
-    if (std::abs(std::hypot(probe.position.x(), probe.position.y()) - offset) < kSame)
-      return fmt::format("Pressure over time, {:.0f} mm from the axis (paper, Figure {})", 1e3 * offset,
-                         figure);
-  return "Pressure over time, " + probe.name;
+  const double beside = std::hypot(probe.position.x(), probe.position.y());
+  return fmt::format("Pressure over time, {}: {:.4g} mm from the axis, {:.4g} mm above the orifice",
+                     probe.name, 1e3 * beside, 1e3 * probe.position.z());
 }
 
 }  // namespace ejecta

@@ -1,12 +1,11 @@
-#include "simulation/run_outputs.hpp"
+#include "simulation/coupled_outputs.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
-#include "base/clock.hpp"
 #include "base/state_reader.hpp"
+#include "simulation/open_history.hpp"
 #include "simulation/replay_header.hpp"
 #include "simulation/spacing.hpp"
 
@@ -37,24 +36,14 @@ std::vector<Vec3> points_of(const LineSpec& line) {
   return points;
 }
 
-/// An output at an interval is due at the first step at or after each multiple of it (0: every step). Then
-/// `last`, the time it was written last, becomes `time`.
-bool due(double interval, double time, double& last) {
-  const double next = interval > 0.0 ? (std::floor(last / interval * (1.0 + 1e-9)) + 1.0) * interval : last;
-  if (time < next * (1.0 - 1e-9)) return false;
-  last = time;
-  return true;
-}
+constexpr double kNever = -1.0;
 
-/// A new history, or the one of the run that is resumed.
-std::unique_ptr<output::HistoryFile> open_history(const output::RunDirectory& directory,
-                                                  const std::string& name,
-                                                  const std::vector<std::string>& provenance,
-                                                  std::vector<Column> columns, std::optional<double> resume) {
-  const auto path = directory.history(name);
-  if (resume && std::filesystem::exists(path))
-    return std::make_unique<output::HistoryFile>(path, std::move(columns), *resume);
-  return std::make_unique<output::HistoryFile>(path, provenance, std::move(columns));
+double or_never(double interval) { return interval > 0.0 ? interval : kNever; }
+
+double replay_interval(const Case& c) {
+  if (!c.output.report) return kNever;
+  constexpr double kFrames = 200.0;
+  return c.output.slices_interval > 0.0 ? c.output.slices_interval : c.run.end_time / kFrames;
 }
 
 output::PvdSeries open_series(const output::RunDirectory& directory, const std::string& name,
@@ -68,9 +57,17 @@ constexpr std::size_t kHistories = 200;
 
 }  // namespace
 
-RunOutputs::RunOutputs(const Case& c, const CoupledModel& model, const output::RunDirectory& directory,
-                       const std::vector<std::string>& provenance, std::optional<double> resume)
-    : case_(c), model_(model), directory_(directory), provenance_(provenance) {
+CoupledOutputs::CoupledOutputs(const Case& c, const CoupledModel& model,
+                               const output::RunDirectory& directory,
+                               const std::vector<std::string>& provenance, std::optional<double> resume)
+    : case_(c),
+      model_(model),
+      directory_(directory),
+      provenance_(provenance),
+      histories_(c.output.history_interval),
+      fields_(or_never(c.output.fields_interval)),
+      slices_due_(or_never(c.output.slices_interval)),
+      replay_due_(replay_interval(c)) {
   if (model.particles().bodies().size() <= kHistories)
     for (const Body& b : model.particles().bodies())
       bodies_.push_back(open_history(directory, "body-" + b.name, provenance, body_columns(), resume));
@@ -109,7 +106,6 @@ RunOutputs::RunOutputs(const Case& c, const CoupledModel& model, const output::R
   header_ = replay_header(c, model);
   if (bodies_series_) bodies_writer_.emplace(header_.bodies);
   if (c.output.report) {
-    replay_interval_ = c.output.slices_interval > 0.0 ? c.output.slices_interval : c.run.end_time / 200.0;
     replay_ = resume && std::filesystem::exists(directory.replay())
                   ? std::make_unique<output::ReplayFile>(directory.replay(), *resume)
                   : std::make_unique<output::ReplayFile>(directory.replay(), header_);
@@ -117,31 +113,27 @@ RunOutputs::RunOutputs(const Case& c, const CoupledModel& model, const output::R
   }
 }
 
-void RunOutputs::add_events(Clock& clock, double end) const {
-  clock.add_events_every(case_.output.fields_interval, 0.0, end);
-  clock.add_events_every(case_.output.slices_interval, 0.0, end);
+void CoupledOutputs::add_events(Clock& clock) const {
+  clock.add_events_every(case_.output.fields_interval, 0.0, case_.run.end_time);
+  clock.add_events_every(case_.output.slices_interval, 0.0, case_.run.end_time);
 }
 
-void RunOutputs::observe(double time, std::int64_t) {
+void CoupledOutputs::observe(double time, std::int64_t) {
   update_probes(time);
-  if (due(case_.output.history_interval, time, last_history_)) write_histories(time);
-  if (case_.output.fields_interval > 0.0 && due(case_.output.fields_interval, time, last_fields_))
-    write_fields(time);
-  if (case_.output.slices_interval > 0.0 && model_.air() &&
-      due(case_.output.slices_interval, time, last_slices_)) {
-    write_slices(time);
-    write_lines(time);
-  }
-  if (replay_ && due(replay_interval_, time, last_replay_)) write_replay(time);
+  if (histories_.due(time)) write_histories(time);
+  if (fields_.due(time)) write_fields(time);
+  if (model_.air() && slices_due_.due(time)) write_slices(time);
+  if (replay_due_.due(time)) write_replay(time);
 }
 
-void RunOutputs::update_probes(double time) {
+void CoupledOutputs::update_probes(double time) {
   const double dt = time - last_probe_time_;
   last_probe_time_ = time;
   for (Probe& p : probes_) p.read(*model_.flow(), time, dt);
 }
 
-void RunOutputs::write_histories(double time) {
+void CoupledOutputs::write_histories(double time) {
+  histories_.done(time);
   const auto bodies = model_.particles().bodies();
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
     std::array<double, 21> row;
@@ -162,7 +154,7 @@ void RunOutputs::write_histories(double time) {
   }
 }
 
-std::vector<CellField> RunOutputs::written_fields() const {
+std::vector<CellField> CoupledOutputs::written_fields() const {
   std::vector<CellField> fields = model_.flow()->fields();
   const std::vector<std::string>& chosen = case_.output.fields;
   if (!chosen.empty())
@@ -172,7 +164,8 @@ std::vector<CellField> RunOutputs::written_fields() const {
   return fields;
 }
 
-void RunOutputs::write_fields(double time) {
+void CoupledOutputs::write_fields(double time) {
+  fields_.done(time);
   if (air_ && model_.air()) {
     const auto path = air_->next(".vtr");
     writer_->write(path, time, written_fields());
@@ -199,7 +192,8 @@ void RunOutputs::write_fields(double time) {
   }
 }
 
-void RunOutputs::write_replay(double time) {
+void CoupledOutputs::write_replay(double time) {
+  replay_due_.done(time);
   output::ReplayFrame frame;
   frame.time = time;
   for (const Body& b : model_.particles().bodies())
@@ -216,7 +210,8 @@ void RunOutputs::write_replay(double time) {
   replay_->add(frame);
 }
 
-void RunOutputs::write_slices(double time) {
+void CoupledOutputs::write_slices(double time) {
+  slices_due_.done(time);
   for (std::size_t s = 0; s < slices_.size(); ++s) {
     const SliceSpec& spec = case_.slices[s];
     const auto path = slices_[s].next(".vtr");
@@ -224,9 +219,10 @@ void RunOutputs::write_slices(double time) {
                    output::slice_range(model_.grid(), spec.axis, spec.position));
     slices_[s].add(time, path);
   }
+  write_lines(time);
 }
 
-void RunOutputs::write_lines(double time) {
+void CoupledOutputs::write_lines(double time) {
   for (Line& line : lines_) {
     std::vector<double> row(line.file->columns().size());
     for (std::size_t n = 0; n < line.points.size(); ++n) {
@@ -237,8 +233,8 @@ void RunOutputs::write_lines(double time) {
   }
 }
 
-void RunOutputs::finish(double time) {
-  if (time > last_history_) write_histories(time);
+void CoupledOutputs::finish(double time) {
+  if (time > histories_.last()) write_histories(time);
   const Particles& particles = model_.particles();
   if (!belt_runs(particles)) return;
   output::HistoryFile file(directory_.history("spacing"), provenance_,
@@ -255,7 +251,7 @@ void RunOutputs::finish(double time) {
   }
 }
 
-void RunOutputs::report(nlohmann::ordered_json& result) const {
+void CoupledOutputs::report(nlohmann::ordered_json& result) {
   if (!model_.flow()) return;
   const auto quantities = model_.flow()->quantities();
   for (const Probe& p : probes_) p.report(result, quantities);
@@ -270,16 +266,17 @@ void RunOutputs::report(nlohmann::ordered_json& result) const {
   }
 }
 
-std::vector<double> RunOutputs::state() const {
-  std::vector<double> s{last_history_, last_fields_, last_slices_, last_replay_, last_probe_time_};
+std::vector<double> CoupledOutputs::state() const {
+  std::vector<double> s{histories_.last(), fields_.last(), slices_due_.last(), replay_due_.last(),
+                        last_probe_time_};
   for (const Probe& p : probes_) p.save(s);
   return s;
 }
 
-void RunOutputs::restore(const std::vector<double>& s) {
+void CoupledOutputs::restore(const std::vector<double>& s) {
   StateReader in(s, "outputs");
-  for (double* v : {&last_history_, &last_fields_, &last_slices_, &last_replay_, &last_probe_time_})
-    *v = in.number();
+  for (Schedule* schedule : {&histories_, &fields_, &slices_due_, &replay_due_}) schedule->done(in.number());
+  last_probe_time_ = in.number();
   for (Probe& p : probes_) p.load(in);
   in.end();
 }

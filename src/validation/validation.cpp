@@ -1,19 +1,15 @@
-#include "app/validation.hpp"
+#include "validation/validation.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 
-#include "app/exit_code.hpp"
 #include "base/error.hpp"
 #include "base/text.hpp"
 #include "case/extent.hpp"
-#include "case/load.hpp"
 #include "output/output_file.hpp"
 #include "output/report.hpp"
-#include "simulation/body_checks.hpp"
 
 namespace ejecta {
 namespace {
@@ -25,12 +21,6 @@ std::string reference_words(const ExpectSpec& e) {
   if (e.at_least) words += fmt::format("{}>= {:.6g}", words.empty() ? "" : ", ", *e.at_least);
   if (e.at_most) words += fmt::format("{}<= {:.6g}", words.empty() ? "" : ", ", *e.at_most);
   return words;
-}
-
-nlohmann::json read_result(const std::filesystem::path& run_directory) {
-  std::ifstream file(run_directory / "result.json");
-  if (!file) throw Error(fmt::format("{}: no result.json", run_directory.string()));
-  return nlohmann::json::parse(file);
 }
 
 }  // namespace
@@ -109,7 +99,7 @@ nlohmann::json with_orders(const std::vector<nlohmann::json>& results, const std
 }
 
 bool Validation::pass() const {
-  return exit_code == exit_done &&
+  return failure.empty() &&
          std::all_of(comparisons.begin(), comparisons.end(), [](const Comparison& c) { return c.pass; });
 }
 
@@ -131,22 +121,22 @@ void record(const std::filesystem::path& run_directory, const std::vector<Compar
   if (std::filesystem::exists(run_directory / "report.html")) output::write_report(run_directory);
 }
 
-void run_and_compare(const std::string& path, const RunOptions& options, const Runner& run, Validation& v) {
-  const Case c = load_checked(path);
+void run_and_compare(const std::string& path, const std::filesystem::path& out, const Runner& runner,
+                     Validation& v) {
+  const Case c = runner.load(path);
   if (c.expects.empty()) throw InputError(fmt::format("{}: no [[expect]], nothing to compare with", path));
   const bool series = !c.convergence.factors.empty();
   const std::vector<double> factors = series ? c.convergence.factors : std::vector<double>{1.0};
   std::vector<nlohmann::json> results;
   std::filesystem::path last;
   for (double factor : factors) {
-    RunOptions one = options;
-    const std::string level = series ? fmt::format("-x{:g}", factor) : "";
-    last = std::filesystem::path(options.out) / fmt::format("{}{}.run", v.name, level);
-    one.out = last.string();
-    v.exit_code = run(series ? refined(c, factor) : c, one);
-    if (v.exit_code == exit_undecided) v.exit_code = exit_done;  // what it must be, its [[expect]] says
-    if (v.exit_code != exit_done) return;
-    results.push_back(read_result(one.out));
+    last = out / fmt::format("{}{}.run", v.name, series ? fmt::format("-x{:g}", factor) : "");
+    const auto result = runner.run(series ? refined(c, factor) : c, last);
+    if (!result) {
+      v.failure = "stopped";
+      return;
+    }
+    results.emplace_back(*result);
   }
   if (series) results.back() = with_orders(results, factors);
   for (const ExpectSpec& e : c.expects)
@@ -156,21 +146,21 @@ void run_and_compare(const std::string& path, const RunOptions& options, const R
 
 }  // namespace
 
-Validation validate_case(const std::string& path, const RunOptions& options, const Runner& run) {
-  Validation v{
-      .name = std::filesystem::path(path).stem().string(), .exit_code = 0, .message = "", .comparisons = {}};
-  const auto failed = [&](int code, const std::exception& e) {
-    v.exit_code = code;
+Validation validate_case(const std::string& path, const std::string& name, const std::filesystem::path& out,
+                         const Runner& runner) {
+  Validation v{.name = name};
+  const auto failed = [&](const char* how, const std::exception& e) {
+    v.failure = how;
     v.message = e.what();
   };
   try {
-    run_and_compare(path, options, run, v);
+    run_and_compare(path, out, runner, v);
   } catch (const InputError& e) {
-    failed(exit_bad_input, e);
+    failed("bad input", e);
   } catch (const DivergedError& e) {
-    failed(exit_diverged, e);
+    failed("diverged", e);
   } catch (const std::exception& e) {
-    failed(exit_failure, e);
+    failed("failed", e);
   }
   return v;
 }
@@ -181,10 +171,8 @@ std::string validation_table(const std::vector<Validation>& list) {
   int failed = 0;
   for (const Validation& v : list) {
     failed += v.pass() ? 0 : 1;
-    text += fmt::format("{}{}\n", v.name,
-                        v.exit_code == exit_done
-                            ? ""
-                            : fmt::format(": failed with exit code {}\n{}", v.exit_code, v.message));
+    text +=
+        fmt::format("{}{}\n", v.name, v.failure.empty() ? "" : fmt::format(": {}\n{}", v.failure, v.message));
     for (const Comparison& c : v.comparisons) {
       text += fmt::format("  {:<42} {:>14} {:>16} {:>11}  {:<4}  {}\n", c.quantity, c.computed, c.reference,
                           c.error, c.pass ? "yes" : "NO", c.source);

@@ -1,7 +1,6 @@
-#include "app/jet_records.hpp"
+#include "jet/records.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -14,19 +13,6 @@ constexpr int kRings = 4, kAround = 8;
 double percent(double value, double reference) { return 100.0 * (value / reference - 1.0); }
 
 }  // namespace
-
-JetProbe::JetProbe(const ProbeSpec& spec, const output::RunDirectory& directory,
-                   std::span<const std::string> provenance)
-    : spec_(spec),
-      history_(directory.history("probe-" + spec.name), provenance,
-               {{"total_gauge", "Pa"},
-                {"transducer", "Pa"},
-                {"velocity_z", "m/s"},
-                {"mach", "1"},
-                {"pressure", "Pa"},
-                {"density", "kg/m3"},
-                {"k", "m2/s2"},
-                {"epsilon", "m2/s3"}}) {}
 
 double JetProbe::over_opening(const JetModel& jet) const {
   if (spec_.diameter <= 0.0) return jet.sample(spec_.position).pitot_gauge;
@@ -52,16 +38,6 @@ void JetProbe::advance(const JetModel& jet, double dt) {
   peak_mach_ = std::max(peak_mach_, s.mach);
 }
 
-void JetProbe::write(const JetModel& jet) {
-  const JetSample s = jet.sample(spec_.position);
-  const std::array<double, 8> row{s.total_gauge, reading_, s.velocity.z(), s.mach, s.pressure,
-                                  s.density,     s.k,      s.epsilon};
-  history_.add(jet.time(), row);
-  times_.push_back(jet.time());
-  ideal_.push_back(s.total_gauge);
-  readings_.push_back(reading_);
-}
-
 nlohmann::ordered_json JetProbe::summary() const {
   return {{"name", spec_.name},
           {"position_m", {spec_.position.x(), spec_.position.y(), spec_.position.z()}},
@@ -72,15 +48,14 @@ nlohmann::ordered_json JetProbe::summary() const {
           {"peak_mach", peak_mach_}};
 }
 
-OrificeRecord::OrificeRecord(const output::RunDirectory& directory, std::span<const std::string> provenance)
-    : history_(directory.history("orifice"), provenance,
-               {{"opening", "1"},
-                {"total_pressure", "Pa"},
-                {"mass_flow", "kg/s"},
-                {"mass_flow_exact", "kg/s"},
-                {"thrust", "N"},
-                {"thrust_exact", "N"},
-                {"mass", "kg"}}) {}
+void JetProbe::save(std::vector<double>& out) const {
+  out.insert(out.end(), {reading_, peak_reading_, peak_reading_at_, peak_total_, peak_total_at_, peak_mach_});
+}
+
+void JetProbe::load(StateReader& in) {
+  for (double* v : {&reading_, &peak_reading_, &peak_reading_at_, &peak_total_, &peak_total_at_, &peak_mach_})
+    *v = in.number();
+}
 
 void OrificeRecord::advance(const JetModel& jet, double dt) {
   const JetFlow flow = jet.orifice_flow();
@@ -95,18 +70,13 @@ void OrificeRecord::advance(const JetModel& jet, double dt) {
   ideal_thrust_ += nozzle_thrust(jet.ideal_exit(), v.discharge_coefficient, v.orifice_diameter) * dt;
 }
 
-void OrificeRecord::write(const JetModel& jet) {
-  const ValveSpec& v = jet.scenario().valve;
-  const JetFlow flow = jet.orifice_flow();
-  const NozzleExit ideal = jet.ideal_exit();
-  const std::array<double, 7> row{jet.valve().opening(jet.time()),
-                                  jet.valve().total_pressure(jet.time(), jet.ambient_pressure()),
-                                  flow.mass,
-                                  nozzle_mass_flow(ideal, v.discharge_coefficient, v.orifice_diameter),
-                                  flow.momentum,
-                                  nozzle_thrust(ideal, v.discharge_coefficient, v.orifice_diameter),
-                                  mass_};
-  history_.add(jet.time(), row);
+void OrificeRecord::save(std::vector<double>& out) const {
+  out.insert(out.end(), {mass_, impulse_, open_time_, mass_flow_, thrust_, ideal_mass_flow_, ideal_thrust_});
+}
+
+void OrificeRecord::load(StateReader& in) {
+  for (double* v : {&mass_, &impulse_, &open_time_, &mass_flow_, &thrust_, &ideal_mass_flow_, &ideal_thrust_})
+    *v = in.number();
 }
 
 nlohmann::ordered_json OrificeRecord::summary(const JetModel& jet) const {

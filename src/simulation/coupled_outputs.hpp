@@ -17,23 +17,21 @@
 namespace ejecta {
 
 /// Everything a run writes while it goes. Observes the model, never changes it.
-class RunOutputs {
+class CoupledOutputs : public Outputs {
  public:
   /// `resume_time`: go on with existing files, dropping what is later.
-  RunOutputs(const Case& c, const CoupledModel& model, const output::RunDirectory& directory,
-             const std::vector<std::string>& provenance, std::optional<double> resume_time);
+  CoupledOutputs(const Case& c, const CoupledModel& model, const output::RunDirectory& directory,
+                 const std::vector<std::string>& provenance, std::optional<double> resume_time);
 
-  /// Called after every step; writes what is due.
-  void observe(double time, std::int64_t step);
-  /// Output times the clock must land on.
-  void add_events(class Clock& clock, double end) const;
+  void observe(double time, std::int64_t steps) override;
+  void add_events(Clock& clock) const override;
   /// The last row of the histories, whatever their interval.
-  void finish(double time);
-  /// Greatest value each probe saw of each quantity, with its time; last values; lines: for result.json.
-  void report(nlohmann::ordered_json& result) const;
+  void finish(double time) override;
+  /// Greatest value each probe saw of each quantity, with its time; last values; lines.
+  void report(nlohmann::ordered_json& result) override;
 
-  std::vector<double> state() const;
-  void restore(const std::vector<double>& state);
+  std::vector<double> state() const override;
+  void restore(const std::vector<double>& state) override;
 
  private:
   struct Line {
@@ -64,9 +62,8 @@ class RunOutputs {
   std::unique_ptr<output::ReplayFile> replay_;
   output::ReplayHeader header_;
   std::vector<output::SliceSampler> samplers_;
-  // When each was last written, s.
-  double last_history_ = -1e300, last_fields_ = -1e300, last_slices_ = -1e300, last_replay_ = -1e300;
-  double last_probe_time_ = 0.0, replay_interval_ = 0.0;
+  Schedule histories_, fields_, slices_due_, replay_due_;
+  double last_probe_time_ = 0.0;
 };
 
 }  // namespace ejecta

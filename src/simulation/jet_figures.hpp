@@ -5,8 +5,8 @@
 
 namespace ejecta {
 
-/// From here on the far part of a centreline is drawn by itself, m: the paper's box begins there.
-inline constexpr double kFarView = 40e-3;
+/// Where the far field of a jet begins: there its decay is fitted and drawn by itself, m above the orifice.
+double far_field_from(const Case& c);
 
 /// Total gauge pressure over the height: kPa over mm.
 output::Figure centreline_figure(const std::string& title);
@@ -21,7 +21,7 @@ output::FigureSeries measured_series(const std::string& label, const MeasuredCur
 /// grey = exp(-10 |grad rho| / largest).
 output::Picture schlieren_picture(const JetModel& jet);
 
-/// "paper, Figure 9" for a probe on the axis, 13, 14, 15 for 4, 8, 10 mm beside it; else the name alone.
+/// Its name and place.
 std::string probe_title(const ProbeSpec& probe);
 
 }  // namespace ejecta

@@ -1,5 +1,3 @@
-#include "simulation/run_result.hpp"
-
 #include <fmt/format.h>
 
 #include <cmath>
@@ -8,6 +6,7 @@
 #include "case/expression.hpp"
 #include "jet/round_jet.hpp"
 #include "simulation/assumptions.hpp"
+#include "simulation/coupled_model.hpp"
 #include "simulation/spacing.hpp"
 
 namespace ejecta {
@@ -160,8 +159,9 @@ void add_round_jet(const CoupledModel& m, double time, Json& result) {
 
 }  // namespace
 
-Json make_result(const CoupledModel& m, double time, std::int64_t steps, double wall_time,
-                 std::span<const OperatorTime> operators) {
+Json CoupledModel::result(double time, std::int64_t steps, double wall_time,
+                          std::span<const OperatorTime> operators) const {
+  const CoupledModel& m = *this;
   const Case& c = m.config();
   Json r;
   r["title"] = c.run.title;

@@ -2,10 +2,10 @@
 #include <filesystem>
 #include <functional>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
-#include "app/simulation.hpp"
 #include "case/case.hpp"
 
 namespace ejecta {
@@ -33,23 +33,33 @@ Case refined(const Case& c, double factor);
 /// order = log(e_coarse / e_fine) / log(factor ratio).
 nlohmann::json with_orders(const std::vector<nlohmann::json>& results, const std::vector<double>& factors);
 
-using Runner = std::function<int(const Case&, const RunOptions&)>;
+/// How a case becomes a result, handed in by who knows how to run it.
+struct Runner {
+  std::function<Case(const std::string& path)> load;
+  /// Into a run directory: what its result.json says. Nothing where the run was stopped.
+  std::function<std::optional<nlohmann::ordered_json>(const Case&, const std::filesystem::path& directory)>
+      run;
+};
 
 struct Validation {
   std::string name;
-  int exit_code = 0;    ///< of the run
-  std::string message;  ///< why it failed
-  std::vector<Comparison> comparisons;
+  std::string failure{};  ///< "bad input", "diverged", "stopped" or "failed"; empty: it ran
+  std::string message{};  ///< why it failed
+  std::vector<Comparison> comparisons{};
   bool pass() const;
 };
-/// Runs one case (all its grids) below `options.out` and compares it. Errors are kept in the result: the
+/// Runs one case, all its grids, into directories NAME.run or NAME-xFACTOR.run below `out`, and compares it.
+/// The comparisons become part of the last result.json and of its report. Errors are kept in the result: the
 /// cases after it are run all the same.
-Validation validate_case(const std::string& path, const RunOptions& options, const Runner& run);
+Validation validate_case(const std::string& path, const std::string& name, const std::filesystem::path& out,
+                         const Runner& runner);
 
 /// The case files meant by `names`: a file, a directory, or part of the name of a shipped case; none: all
 /// shipped ones that expect something. Throws InputError for a name that means nothing.
 std::vector<std::filesystem::path> validation_cases(const std::vector<std::string>& names,
                                                     const std::filesystem::path& shipped);
+/// A name for each file: its own, with as many folders before it as tell it from the others, "dem-settling".
+std::vector<std::string> names_of(const std::vector<std::filesystem::path>& files);
 /// Where validation/ and verification/ are: $EJECTA_SHARE, the source tree, or share/ejecta beside the
 /// program.
 std::filesystem::path shipped_cases();

@@ -4,8 +4,8 @@
 #include <cstdlib>
 #include <fstream>
 
-#include "app/validation.hpp"
 #include "base/error.hpp"
+#include "validation/validation.hpp"
 
 namespace ejecta {
 namespace {
@@ -55,6 +55,28 @@ std::vector<path> validation_cases(const std::vector<std::string>& names, const 
                       name, shipped.string()));
   }
   return chosen;
+}
+
+std::vector<std::string> names_of(const std::vector<path>& files) {
+  const auto name = [](const path& file, int folders) {
+    std::string text = file.stem().string();
+    path folder = std::filesystem::absolute(file).lexically_normal().parent_path();
+    for (int n = 0; n < folders && folder.has_filename(); ++n, folder = folder.parent_path())
+      text = folder.filename().string() + "-" + text;
+    return text;
+  };
+  std::vector<std::string> names;
+  for (const path& file : files) {
+    const auto is_alone = [&](int folders) {
+      return std::count_if(files.begin(), files.end(), [&](const path& other) {
+               return name(other, folders) == name(file, folders);
+             }) == 1;
+    };
+    int folders = 0;
+    while (folders < 32 && !is_alone(folders)) ++folders;
+    names.push_back(name(file, folders < 32 ? folders : 0));
+  }
+  return names;
 }
 
 path shipped_cases() {

@@ -67,7 +67,7 @@ TEST(Periodic, TooNarrowIsRefused) {
   }
 }
 
-TEST(Traffic, ABodyWaitsForItsPlace) {
+TEST(Presence, ABodyWaitsForItsPlace) {
   Case c = scene(stone());
   BodySpec first = ball("first", 10e-3, Vec3(0, 0, 0), Vec3(1, 0, 0)), second = first;
   second.name = "second";
@@ -85,7 +85,7 @@ TEST(Traffic, ABodyWaitsForItsPlace) {
   EXPECT_TRUE(p.contacts().empty());
 }
 
-TEST(Traffic, TheLedgerStaysClosedAndAResumeKnowsWhoIsThere) {
+TEST(Presence, TheLedgerStaysClosedAndAResumeKnowsWhoIsThere) {
   Case c = scene(stone());
   c.environment.gravity = Vec3(0, 0, -9.81);
   c.walls = {floor_at(0)};

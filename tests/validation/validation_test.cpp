@@ -1,10 +1,12 @@
-#include "app/validation.hpp"
+#include "validation/validation.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <fstream>
+#include <functional>
+#include <optional>
 
 #include "base/error.hpp"
 #include "case/load.hpp"
@@ -117,19 +119,20 @@ class ValidateCase : public testing::Test {
            "[[expect]]\nquantity = \"/height\"\nreference = 2\ntolerance = 0.5\nsource = \"by hand\"\n";
   }
 
-  static int write_height(const RunOptions& o, double height) {
-    fs::create_directories(o.out);
-    std::ofstream(fs::path(o.out) / "result.json") << nlohmann::json{{"height", height}};
-    return 0;
-  }
-  static RunOptions options(const std::string& out) {
-    RunOptions o;
-    o.out = out;
-    return o;
+  static Runner runner(const std::function<nlohmann::ordered_json()>& result) {
+    return {.load = [](const std::string& path) { return load_case(path); },
+            .run = [=](const Case&, const fs::path& out) -> std::optional<nlohmann::ordered_json> {
+              const nlohmann::ordered_json json = result();
+              if (json.empty()) return std::nullopt;
+              fs::create_directories(out);
+              std::ofstream(out / "result.json") << json;
+              return json;
+            }};
   }
   Validation with_height(double height) {
-    return validate_case(file.string(), options((folder / "runs").string()),
-                         [=](const Case&, const RunOptions& o) { return write_height(o, height); });
+    return validate_case(file.string(), "bounce", folder / "runs", runner([=] {
+                           return nlohmann::ordered_json{{"height", height}};
+                         }));
   }
 };
 
@@ -141,11 +144,24 @@ TEST_F(ValidateCase, PassesAndFails) {
 
 TEST_F(ValidateCase, AFailedRunIsAFailedCase) {
   const Validation v =
-      validate_case(file.string(), options(folder.string()),
-                    [](const Case&, const RunOptions&) -> int { throw DivergedError("at t = 1 s"); });
+      validate_case(file.string(), "bounce", folder,
+                    runner([]() -> nlohmann::ordered_json { throw DivergedError("at t = 1 s"); }));
   EXPECT_FALSE(v.pass());
-  EXPECT_EQ(v.exit_code, 3);
+  EXPECT_EQ(v.failure, "diverged");
   EXPECT_THAT(validation_table({v}), HasSubstr("at t = 1 s"));
+}
+
+TEST_F(ValidateCase, AStoppedRunIsNoPass) {
+  const Validation v =
+      validate_case(file.string(), "bounce", folder, runner([] { return nlohmann::ordered_json(); }));
+  EXPECT_FALSE(v.pass());
+  EXPECT_EQ(v.failure, "stopped");
+}
+
+TEST(NamesOfCases, TellFilesOfEqualNamesApart) {
+  EXPECT_EQ(names_of({"a/settling.toml", "b/settling.toml", "b/cavity.toml"}),
+            (std::vector<std::string>{"a-settling", "b-settling", "cavity"}));
+  EXPECT_EQ(names_of({"x/a/s.toml", "y/a/s.toml"}), (std::vector<std::string>{"x-a-s", "y-a-s"}));
 }
 
 TEST_F(ValidateCase, FoundByFileFolderOrPartOfAName) {

@@ -1,4 +1,4 @@
-#include "app/jet_files.hpp"
+#include "simulation/jet_files.hpp"
 
 #include <algorithm>
 #include <array>

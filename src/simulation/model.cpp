@@ -1,0 +1,15 @@
+#include "simulation/model.hpp"
+
+#include <fmt/format.h>
+
+#include "base/error.hpp"
+
+namespace ejecta {
+
+const std::vector<double>& numbers_of(const StateNumbers& numbers, const std::string& name) {
+  const auto at = numbers.find(name);
+  if (at == numbers.end()) throw Error(fmt::format("the saved state has no \"{}\"", name));
+  return at->second;
+}
+
+}  // namespace ejecta
