@@ -2,6 +2,8 @@
 """Checks that the house is built as ARCHITECTURE.md says.
 
 * A file of a room includes only the rooms that the table of ARCHITECTURE.md allows it.
+* No folders include each other in a circle.
+* No header says "using namespace" at its top level.
 * No OpenMP, MPI or GPU word stands outside src/base.
 * Only src/app ends the program or prints.
 * Citations of the form [@key] are in docs/references.bib.
@@ -39,6 +41,27 @@ def allowed_rooms(root):
     return allowed
 
 
+def circles(root, sources):
+    """Folders below src/ that include one another, each circle once."""
+    src = root / "src"
+    knows = {}
+    for path in sources:
+        folder = path.parent.relative_to(src)
+        for other in INCLUDE.findall(path.read_text()):
+            if (src / other).exists() and (into := pathlib.Path(other).parent) != folder:
+                knows.setdefault(folder, set()).add(into)
+
+    def walk(folder, way):
+        for other in sorted(knows.get(folder, ())):
+            if other == way[0]:
+                yield way
+            elif other > way[0] and other not in way:
+                yield from walk(other, way + [other])
+
+    for folder in sorted(knows):
+        yield from walk(folder, [folder])
+
+
 def line_of(text, position):
     return text.count("\n", 0, position) + 1
 
@@ -56,6 +79,8 @@ def complaints(root):
                 continue
             if other not in allowed[room]:
                 yield f"{name}:{line_of(text, match.start())}: {room} must not include {other} ({match.group(1)})"
+        if path.suffix == ".hpp" and (match := re.search(r"^using namespace", text, re.M)):
+            yield f"{name}:{line_of(text, match.start())}: using namespace in a header"
         if path.suffix == ".hpp" and not text.startswith("#pragma once"):
             yield f"{name}:1: a header starts with #pragma once"
         code = STRING.sub('""', COMMENT.sub("", text))
@@ -63,6 +88,9 @@ def complaints(root):
             yield f"{name}: {match.group(0)!r}: parallel loops only through base/parallel.hpp"
         if room != "app" and (match := ENDS_OR_PRINTS.search(code)):
             yield f"{name}: {match.group(0)!r}: only app/ ends the program or prints"
+
+    for way in circles(root, sources):
+        yield "folders in a circle: " + " -> ".join(str(folder) for folder in way + way[:1])
 
     bibliography = root / "docs" / "references.bib"
     known = set(re.findall(r"@\w+\{([^,\s]+),", bibliography.read_text())) if bibliography.exists() else set()

@@ -23,11 +23,11 @@ class CompressibleAir : public JetAir {
         grid_(grid),
         drive_(c),
         formulas_(c, grid),
-        solver_(godunov::solver_from_case(c, grid, inlets_)) {}
+        solver_(gas::solver_from_case(c, grid, inlets_)) {}
 
   double stable_dt(double) override { return solver_->stable_dt(case_.run.courant); }
   void advance(double time, double dt) override {
-    godunov::drive(*solver_, inlets_, drive_.supply(time + 0.5 * dt));
+    gas::drive(*solver_, inlets_, drive_.supply(time + 0.5 * dt));
     if (formulas_.vary()) formulas_.apply(time + 0.5 * dt, *solver_);
     solver_->advance(dt);
   }
@@ -37,18 +37,17 @@ class CompressibleAir : public JetAir {
       return sampler(solver_->primitive()[static_cast<std::size_t>(c)].view());
     };
     JetPoint p;
-    p.density = value(godunov::kRho);
-    p.velocity = {value(godunov::kU), grid_.axisymmetric() ? 0.0 : value(godunov::kV), value(godunov::kW)};
-    p.pressure = value(godunov::kP) + solver_->options().reference_pressure;
-    p.k = value(godunov::kK);
-    p.epsilon = value(godunov::kE);
-    if (case_.flow.turbulence == TurbulenceModel::k_omega_sst)
-      p.epsilon = godunov::epsilon_of(p.k, p.epsilon);
+    p.density = value(gas::kRho);
+    p.velocity = {value(gas::kU), grid_.axisymmetric() ? 0.0 : value(gas::kV), value(gas::kW)};
+    p.pressure = value(gas::kP) + solver_->options().reference_pressure;
+    p.k = value(gas::kK);
+    p.epsilon = value(gas::kE);
+    if (case_.flow.turbulence == TurbulenceModel::k_omega_sst) p.epsilon = gas::epsilon_of(p.k, p.epsilon);
     return p;
   }
   JetFlow flux(int i, int j, int k) const override {
-    const godunov::Block& f = solver_->flux(2);
-    return {double(f[godunov::kRho](i, j, k)), double(f[godunov::kW](i, j, k))};
+    const gas::Block& f = solver_->flux(2);
+    return {double(f[gas::kRho](i, j, k)), double(f[gas::kW](i, j, k))};
   }
   bool finite(Vec3* where) const override { return solver_->finite(where); }
   std::vector<NamedField> state_fields() override { return solver_->state(); }
@@ -68,9 +67,9 @@ class CompressibleAir : public JetAir {
   const Case& case_;
   const Grid& grid_;
   JetDrive drive_;
-  godunov::FormulaFaces formulas_;
-  std::vector<godunov::DrivenInlet> inlets_;
-  std::unique_ptr<godunov::GasFlow> solver_;
+  gas::FormulaFaces formulas_;
+  std::vector<gas::DrivenInlet> inlets_;
+  std::unique_ptr<gas::GasFlow> solver_;
 };
 
 /// Of constant density, from a velocity inlet (paper 2.2.2).

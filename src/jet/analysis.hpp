@@ -1,7 +1,7 @@
 #pragma once
 #include <vector>
 
-#include "flow/gas.hpp"
+#include "flow/ideal_gas.hpp"
 #include "jet/model.hpp"
 #include "jet/round_jet.hpp"
 

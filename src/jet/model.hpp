@@ -4,7 +4,7 @@
 
 #include "base/clock.hpp"
 #include "case/case.hpp"
-#include "flow/gas.hpp"
+#include "flow/ideal_gas.hpp"
 #include "grid/grid.hpp"
 #include "jet/air.hpp"
 #include "jet/drive.hpp"

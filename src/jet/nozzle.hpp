@@ -2,7 +2,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "flow/gas.hpp"
+#include "flow/ideal_gas.hpp"
 
 /// Convergent nozzle of a valve: isentropic up to the orifice, choked when p0/pa exceeds the critical ratio.
 /// Pure functions in SI units. Source: Anderson, Modern Compressible Flow, 3rd ed., chapter 5.

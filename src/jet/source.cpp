@@ -2,7 +2,7 @@
 
 #include "case/extent.hpp"
 #include "case/load.hpp"
-#include "flow/gas.hpp"
+#include "flow/ideal_gas.hpp"
 #include "jet/computed.hpp"
 #include "jet/nozzle.hpp"
 

@@ -10,7 +10,7 @@
 #include "case/expression.hpp"
 #include "case/load.hpp"
 #include "dem/course.hpp"
-#include "flow/gas.hpp"
+#include "flow/ideal_gas.hpp"
 #include "grid/grid.hpp"
 #include "jet/source.hpp"
 #include "simulation/air_forecast.hpp"

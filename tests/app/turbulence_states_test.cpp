@@ -131,7 +131,7 @@ TEST(TurbulenceStates, AnInletOfGasHasItsProfile) {
   Channel flow(
       channel("k = \"= 0.02 - 0.5 * z + t\"\nepsilon = \"0.3 m2/s3\"\n[fluid]\nviscosity = \"1e-5 Pa s\"",
               "k-epsilon\"\nsolver = \"compressible-piso"));
-  const godunov::GasFormula inlet(flow.c, flow.c.boundary[0].state);
+  const gas::GasFormula inlet(flow.c, flow.c.boundary[0].state);
   EXPECT_TRUE(inlet.uses_time());
   EXPECT_NEAR(inlet.at({0, 0, 0.01}, 0.1).k, 0.115, 1e-12);
   EXPECT_NEAR(inlet.at({0, 0, 1.0}, 0.0).k, 1e-4, 1e-12) << "less than nothing: still air";
@@ -147,7 +147,7 @@ TEST(TurbulenceStates, AnInletOfGasHasItsProfile) {
 
 TEST(TurbulenceStates, AGasStartsFromItsProfile) {
   Case c = parse_case(channel("", "k-omega-sst"), "channel");
-  const godunov::GasState gas = godunov::gas_state(c, c.initial[0].state, {4e-3, 0, 8e-3}, 0.0);
+  const gas::GasState gas = gas::gas_state(c, c.initial[0].state, {4e-3, 0, 8e-3}, 0.0);
   EXPECT_NEAR(gas.k, 0.014, 1e-12);
   EXPECT_NEAR(gas.e, 0.52 / (0.09 * 0.014), 1e-4);
 }

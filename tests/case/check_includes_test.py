@@ -14,6 +14,7 @@ WRONG = {
     "dem/loop.cpp": ("#pragma omp parallel for\n", "parallel loops only"),
     "dem/quits.cpp": ("void f() { exit(1); }\n", "only app/ ends"),
     "dem/law.hpp": ("int law();\n", "starts with #pragma once"),
+    "dem/opens.hpp": ("#pragma once\nusing namespace base;\n", "using namespace in a header"),
     "dem/cites.cpp": ("// [@nobody:1900]\n", "no entry nobody:1900"),
 }
 RIGHT = {
@@ -32,6 +33,7 @@ def check(files):
         for room in ("base", "dem", "app"):
             (root / "src" / room).mkdir(parents=True)
         for name, text in files.items():
+            (root / "src" / name).parent.mkdir(parents=True, exist_ok=True)
             (root / "src" / name).write_text(text)
         tool = subprocess.run(
             [sys.executable, ROOT / "tools" / "check_includes.py", root], capture_output=True, text=True
@@ -41,6 +43,13 @@ def check(files):
 
 code, text = check(RIGHT)
 assert code == 0, text
+circle = {
+    "dem/law/a.hpp": '#pragma once\n#include "dem/shape/b.hpp"\n',
+    "dem/shape/b.hpp": '#pragma once\n#include "dem/solve/c.hpp"\n',
+    "dem/solve/c.hpp": '#pragma once\n#include "dem/law/a.hpp"\n',
+}
+code, text = check({**RIGHT, **circle})
+assert code == 1 and text == "folders in a circle: dem/law -> dem/shape -> dem/solve -> dem/law\n", text
 for name, (content, words) in WRONG.items():
     code, text = check({**RIGHT, name: content})
     assert code == 1 and words in text and name in text, (name, text)

@@ -11,14 +11,14 @@
 namespace ejecta {
 namespace {
 
-using godunov::GasState;
+using gas::GasState;
 using test::even_axis;
-using Tube = test::TubeOf<piso::Compressible>;
+using Tube = test::TubeOf<gas::Compressible>;
 
 constexpr double kAmbient = 101325.0, kDensity = 1.184, kGamma = 1.4;
 
-godunov::Options air() {
-  godunov::Options o;
+gas::Options air() {
+  gas::Options o;
   o.reference_pressure = kAmbient;
   return o;
 }
@@ -83,11 +83,11 @@ TEST(BodiesInGas, MassMomentumAndEnergyOfAClosedBoxAndItsBodyAreKept) {
   t.solver.keep_ledger();
   CutCells mask;
   advance(t, coupling, bodies, mask, t.solver.stable_dt(0.8));  // the body's own volume of gas is gone
-  const godunov::Contents start = t.solver.contents();
-  const godunov::BoundaryLedger before = t.solver.ledger();
+  const gas::Contents start = t.solver.contents();
+  const gas::BoundaryLedger before = t.solver.ledger();
   for (int n = 0; n < 40; ++n) advance(t, coupling, bodies, mask, t.solver.stable_dt(0.8));
-  const godunov::BoundaryLedger& l = t.solver.ledger();
-  const godunov::Contents gained = t.solver.contents() - start, displaced = l.displaced - before.displaced;
+  const gas::BoundaryLedger& l = t.solver.ledger();
+  const gas::Contents gained = t.solver.contents() - start, displaced = l.displaced - before.displaced;
   const Vec3 given = l.momentum_of_solids - before.momentum_of_solids;
   const double work = l.work_of_solids - before.work_of_solids;
   const double exact = sizeof(Real) == 8 ? 1e-12 : 1e-5;
@@ -107,12 +107,12 @@ TEST(BodiesInGas, ABodyThatLeavesTheBoxTakesNothingAlong) {
   std::vector<Body> bodies{body_of(make_sphere(0.4), 1.0, {0.6, 0.5, 0.5}, {20, 0, 0})};
   bodies[0].motion = Motion::prescribed;
   CutCells mask;
-  const double before = t.solver.total(godunov::kRho);
+  const double before = t.solver.total(gas::kRho);
   while (bodies[0].position.x() < 1.3) {
     advance(t, coupling, bodies, mask, std::min(t.solver.stable_dt(0.8), 5e-4));
   }
-  const godunov::BoundaryLedger& l = t.solver.ledger();
-  EXPECT_NEAR(t.solver.total(godunov::kRho), before + l.mass + l.displaced.mass,
+  const gas::BoundaryLedger& l = t.solver.ledger();
+  EXPECT_NEAR(t.solver.total(gas::kRho), before + l.mass + l.displaced.mass,
               sizeof(Real) == 8 ? 1e-13 : 1e-7);
 }
 
@@ -170,7 +170,7 @@ TEST(BodiesInGas, APistonInDenseGasHasNoInertiaButItsOwn) {
 /// A plate along a turbulent wind of a density that is not the reference's.
 TEST(BodiesInGas, FrictionIsThatOfTheLawOfTheWallAtTheDensityAround) {
   constexpr double speed = 50.0, k = 40.0, epsilon = 4e4, density = 4 * kDensity, viscosity = 1.85e-5;
-  godunov::Options options = air();
+  gas::Options options = air();
   options.turbulence = TurbulenceModel::k_epsilon;
   options.viscosity = viscosity;
   constexpr double h = 0.01;
@@ -192,7 +192,7 @@ TEST(BodiesInGas, FrictionIsThatOfTheLawOfTheWallAtTheDensityAround) {
 /// A cube and a sphere that touch, moving in a turbulent wind.
 TEST(BodiesInGas, BodiesInContactGiveTheSameBitsForAnyNumberOfThreads) {
   const auto forces = [](int threads) {
-    godunov::Options options = air();
+    gas::Options options = air();
     options.turbulence = TurbulenceModel::k_epsilon;
     options.viscosity = 1.85e-5;
     Tube t(even_axis(0, 0.06, 24), even_axis(0, 0.04, 16), even_axis(0, 0.04, 16), false, options);

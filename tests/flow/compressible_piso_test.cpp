@@ -12,8 +12,8 @@
 namespace ejecta {
 namespace {
 
-using godunov::GasState;
-using piso::Compressible;
+using gas::Compressible;
+using gas::GasState;
 using test::even_axis;
 using test::make_tube;
 using Tube = test::TubeOf<Compressible>;
@@ -22,8 +22,8 @@ constexpr double kPi = std::numbers::pi;
 constexpr double kAmbient = 101325.0, kDensity = 1.184;
 const double kSound = std::sqrt(1.4 * kAmbient / kDensity);
 
-godunov::Options air(TurbulenceModel model = TurbulenceModel::laminar) {
-  godunov::Options o;
+gas::Options air(TurbulenceModel model = TurbulenceModel::laminar) {
+  gas::Options o;
   o.reference_pressure = kAmbient;
   o.viscosity = model == TurbulenceModel::laminar ? 0.0 : 1.85e-5;
   o.turbulence = model;
@@ -90,15 +90,15 @@ std::unique_ptr<Tube> puff(bool axisymmetric, TurbulenceModel model) {
 TEST(CompressiblePiso, AClosedBoxKeepsMassAndEnergy) {
   for (const bool axisymmetric : {false, true}) {
     auto t = puff(axisymmetric, TurbulenceModel::laminar);
-    const double mass = t->solver.total(godunov::kRho), energy = t->solver.total(godunov::kP);
+    const double mass = t->solver.total(gas::kRho), energy = t->solver.total(gas::kP);
     double kinetic = 0.0;  // what the energy is measured against: that of the gas at rest is left out of it
     for (int k = 0; k < t->grid.nz(); ++k)
       for (int i = 0; i < t->grid.nx(); ++i)
         kinetic += 0.5 * t->solver.at(i, 0, k).density * t->solver.at(i, 0, k).velocity.squaredNorm() *
                    t->grid.volume(i, 0, k) * (axisymmetric ? 2.0 * kPi : 1.0);
     t->run(1e-3, 0.8);
-    EXPECT_NEAR(t->solver.total(godunov::kRho) / mass, 1.0, sizeof(Real) == 4 ? 1e-6 : 1e-13);
-    EXPECT_NEAR((t->solver.total(godunov::kP) - energy) / kinetic, 0.0, sizeof(Real) == 4 ? 1e-5 : 1e-12);
+    EXPECT_NEAR(t->solver.total(gas::kRho) / mass, 1.0, sizeof(Real) == 4 ? 1e-6 : 1e-13);
+    EXPECT_NEAR((t->solver.total(gas::kP) - energy) / kinetic, 0.0, sizeof(Real) == 4 ? 1e-5 : 1e-12);
   }
 }
 
@@ -109,7 +109,7 @@ TEST(CompressiblePiso, SameBitsForAnyNumberOfThreads) {
     set_thread_count(threads);
     auto t = puff(true, TurbulenceModel::k_epsilon);
     for (int n = 0; n < 20; ++n) t->solver.advance(t->solver.stable_dt(0.8));
-    const Field& f = t->solver.primitive()[godunov::kP];
+    const Field& f = t->solver.primitive()[gas::kP];
     std::vector<Real>& cells = energy.emplace_back();
     for (int k = 0; k < f.nz(); ++k)
       for (int j = 0; j < f.ny(); ++j) cells.insert(cells.end(), &f(0, j, k), &f(0, j, k) + f.nx());
@@ -251,7 +251,7 @@ TEST(CompressiblePiso, AnInletTakesAStateForEachCell) {
 /// At the edge of a starting jet omega jumps by orders of magnitude; taken in one cell, the cross-diffusion
 /// of SST emptied cells of omega, and their eddies grew to the bound of the eddy viscosity.
 TEST(CompressiblePiso, EddiesAtTheEdgeOfAStartingJetStayThoseOfTheJet) {
-  godunov::Options options = air(TurbulenceModel::k_omega_sst);
+  gas::Options options = air(TurbulenceModel::k_omega_sst);
   Tube t(even_axis(0, 0.02, 32), even_axis(0, 1, 1), even_axis(0, 0.04, 64), true, options);
   const GasState still{kDensity, {0, 0, 0}, kAmbient, 1e-4, 1.0};
   t.boundary(1, BoundaryType::free_stream, still);
@@ -274,7 +274,7 @@ TEST(CompressiblePiso, EddiesAtTheEdgeOfAStartingJetStayThoseOfTheJet) {
 /// Mean error of the velocity, over the largest of the vortex, after an isentropic vortex (Yee, Sandham &
 /// Djomehri 1999) was carried by a wind of Mach number `mach`; its own Mach number is a third of it.
 double vortex(int cells, double mach) {
-  godunov::Options o;
+  gas::Options o;
   o.reference_pressure = 1.0;
   Tube t(even_axis(-7, 7, cells), even_axis(0, 1, 1), even_axis(-7, 7, cells), false, o);
   t.all_boundaries(BoundaryType::periodic);

@@ -8,7 +8,7 @@
 namespace ejecta {
 namespace {
 
-using godunov::GasState;
+using gas::GasState;
 using test::even_axis;
 using test::Tube;
 
@@ -18,8 +18,8 @@ GasState puff(double r, double z) {
   return {1.0 + 0.3 * ball, {0, 0, 0.4 * ball}, 1.0 + 0.5 * ball, 0.01 + 0.01 * ball, 0.02 + 0.02 * ball};
 }
 
-godunov::Options options() {
-  godunov::Options o;
+gas::Options options() {
+  gas::Options o;
   o.reference_pressure = 1.0;
   o.viscosity = 2e-3;
   o.turbulence = TurbulenceModel::k_epsilon;

@@ -2,23 +2,23 @@
 
 #include <cmath>
 
-#include "flow/gas.hpp"
+#include "flow/ideal_gas.hpp"
 #include "godunov_case.hpp"
 
 namespace ejecta {
 namespace {
 
-using godunov::Condition;
-using godunov::GasState;
-using godunov::Primitive;
+using gas::Condition;
+using gas::GasState;
+using gas::Primitive;
 using test::even_axis;
 using test::make_tube;
 
 constexpr double kAmbient = 101325.0, kTemperature = 298.15;
 const Gas kAir{};
 
-godunov::Options air() {
-  godunov::Options o;
+gas::Options air() {
+  gas::Options o;
   o.reference_pressure = kAmbient;
   return o;
 }
@@ -68,7 +68,7 @@ TEST(GodunovBoundary, AFreeStreamLetsAirConvergeThroughARim) {
   EXPECT_NEAR(t.solver.at(19, 0, 0).pressure, kAmbient, 1.5);
 }
 
-godunov::GasConstants constants() { return {1.4, 287.05, kAmbient}; }
+gas::GasConstants constants() { return {1.4, 287.05, kAmbient}; }
 
 Primitive at_rest(double pressure) {
   return {Real(gas_density(kAir, pressure, kTemperature)), 0, 0, 0, Real(pressure - kAmbient)};
@@ -104,7 +104,7 @@ class Orifice : public testing::TestWithParam<double> {};
 
 TEST_P(Orifice, PassesTheExactMassAndMomentum) {
   const double gauge = GetParam(), radius = 1e-3, p0 = kAmbient + gauge;
-  godunov::Options o = air();
+  gas::Options o = air();
   test::Tube t(make_axis({0, 2e-3, 2e-2}, {16, 20}, {1, 12}), even_axis(0, 1, 1),
                make_axis({0, 1e-2, 6e-2}, {60, 30}, {1, 10}), true, o);
   const GasState still{gas_density(kAir, kAmbient, kTemperature), {0, 0, 0}, kAmbient};
@@ -123,8 +123,8 @@ TEST_P(Orifice, PassesTheExactMassAndMomentum) {
   double mass = 0.0, thrust = 0.0;
   const Metrics r = t.grid.metrics(0);
   for (int i = 0; i < 8; ++i) {
-    mass += 2 * M_PI * double(r.volume[i]) * double(t.solver.flux(2)[godunov::kRho](i, 0, 0));
-    thrust += 2 * M_PI * double(r.volume[i]) * double(t.solver.flux(2)[godunov::kW](i, 0, 0));
+    mass += 2 * M_PI * double(r.volume[i]) * double(t.solver.flux(2)[gas::kRho](i, 0, 0));
+    thrust += 2 * M_PI * double(r.volume[i]) * double(t.solver.flux(2)[gas::kW](i, 0, 0));
   }
   const double area = M_PI * radius * radius, star = p0 / gas_critical_pressure_ratio(kAir);
   EXPECT_NEAR(mass / (0.040418 * p0 / std::sqrt(kTemperature) * area), 1.0, 0.01);

@@ -9,17 +9,17 @@ namespace ejecta::test {
 
 inline Axis even_axis(double low, double high, int cells) { return make_axis({low, high}, {cells}, {}); }
 
-using GasAt = std::function<godunov::GasState(const Vec3&)>;
+using GasAt = std::function<gas::GasState(const Vec3&)>;
 
 template <class Flow>
 struct TubeOf {
   Grid grid;
   Flow solver;
-  TubeOf(Axis x, Axis y, Axis z, bool axisymmetric, const godunov::Options& options)
+  TubeOf(Axis x, Axis y, Axis z, bool axisymmetric, const gas::Options& options)
       : grid(std::move(x), std::move(y), std::move(z), axisymmetric), solver(grid, options) {}
 
-  void boundary(int face, BoundaryType type, const godunov::GasState& outside = {}) {
-    godunov::Condition c;
+  void boundary(int face, BoundaryType type, const gas::GasState& outside = {}) {
+    gas::Condition c;
     c.type = type;
     c.state = outside;
     solver.boundaries().set_face(face, c);
@@ -42,11 +42,11 @@ struct TubeOf {
   }
 };
 
-using Tube = TubeOf<godunov::Solver>;
+using Tube = TubeOf<gas::Solver>;
 
 /// A tube along x (0), y (1) or z (2) of the unit length.
-template <class Flow = godunov::Solver>
-std::unique_ptr<TubeOf<Flow>> make_tube(int axis, int cells, const godunov::Options& options = {}) {
+template <class Flow = gas::Solver>
+std::unique_ptr<TubeOf<Flow>> make_tube(int axis, int cells, const gas::Options& options = {}) {
   std::array<Axis, 3> a;
   for (int d = 0; d < 3; ++d) a[static_cast<std::size_t>(d)] = even_axis(0, 1, d == axis ? cells : 1);
   return std::make_unique<TubeOf<Flow>>(a[0], a[1], a[2], false, options);

@@ -10,15 +10,15 @@
 namespace ejecta {
 namespace {
 
-using godunov::GasState;
+using gas::GasState;
 using test::even_axis;
 using test::make_tube;
 using test::Tube;
 
 constexpr double kAmbient = 101325.0, kDensity = 1.184;
 
-godunov::Options air(TurbulenceModel model) {
-  godunov::Options o;
+gas::Options air(TurbulenceModel model) {
+  gas::Options o;
   o.reference_pressure = kAmbient;
   o.viscosity = 1.85e-5;
   o.turbulence = model;
@@ -26,7 +26,7 @@ godunov::Options air(TurbulenceModel model) {
 }
 
 /// A strongly graded axisymmetric box of air.
-std::unique_ptr<Tube> graded_can(const godunov::Options& o) {
+std::unique_ptr<Tube> graded_can(const gas::Options& o) {
   auto t = std::make_unique<Tube>(make_axis({0, 1e-3, 4e-2}, {6, 20}, {1, 20}), even_axis(0, 1, 1),
                                   make_axis({0, 0.1}, {30}, {40}), true, o);
   t->boundary(1, BoundaryType::free_stream, {kDensity, {0, 0, 0}, kAmbient, 1e-4, 1e-4});
@@ -52,7 +52,7 @@ TEST(GodunovInvariant, StillAirOnAGradedAxisymmetricGridStaysStill) {
 
 // Without the reference pressure the balance of p A and the hoop is only that of rounding.
 TEST(GodunovInvariant, EvenPressureOnAnAxisymmetricGridIsBalanced) {
-  godunov::Options o;
+  gas::Options o;
   auto t = graded_can(o);
   t->all_boundaries(BoundaryType::symmetry);
   t->fill([](const Vec3&) { return GasState{1.0, {0, 0, 0}, 1.0}; });
@@ -77,7 +77,7 @@ TEST(GodunovInvariant, AUniformWindStaysUniformOnAGradedGrid) {
 }
 
 std::unique_ptr<Tube> blast(bool axisymmetric, TurbulenceModel model) {
-  godunov::Options o;
+  gas::Options o;
   o.viscosity = 1e-3;
   o.turbulence = model;
   auto t =
@@ -93,11 +93,11 @@ std::unique_ptr<Tube> blast(bool axisymmetric, TurbulenceModel model) {
 TEST(GodunovInvariant, AClosedBoxKeepsMassAndEnergyThroughABlast) {
   for (const bool axisymmetric : {false, true}) {
     auto t = blast(axisymmetric, TurbulenceModel::laminar);
-    const double mass = t->solver.total(godunov::kRho), energy = t->solver.total(godunov::kP);
+    const double mass = t->solver.total(gas::kRho), energy = t->solver.total(gas::kP);
     t->run(0.05, 0.5);
     const double round_off = sizeof(Real) == 4 ? 2e-5 : 1e-12;
-    EXPECT_NEAR(t->solver.total(godunov::kRho) / mass, 1.0, round_off);
-    EXPECT_NEAR(t->solver.total(godunov::kP) / energy, 1.0, round_off);
+    EXPECT_NEAR(t->solver.total(gas::kRho) / mass, 1.0, round_off);
+    EXPECT_NEAR(t->solver.total(gas::kP) / energy, 1.0, round_off);
   }
 }
 
@@ -121,7 +121,7 @@ TEST(GodunovInvariant, SameBitsForAnyNumberOfThreads) {
     set_thread_count(threads);
     auto t = blast(true, TurbulenceModel::k_epsilon);
     for (int n = 0; n < 20; ++n) t->solver.advance(t->solver.stable_dt(0.5));
-    const Field& f = t->solver.primitive()[godunov::kRho];
+    const Field& f = t->solver.primitive()[gas::kRho];
     std::vector<Real>& cells = density.emplace_back();
     for (int k = 0; k < f.nz(); ++k)
       for (int j = 0; j < f.ny(); ++j) cells.insert(cells.end(), &f(0, j, k), &f(0, j, k) + f.nx());
@@ -134,7 +134,7 @@ TEST(GodunovInvariant, SameBitsForAnyNumberOfThreads) {
 // Quirk's test: a plane shock of Mach 6 over a grid with a disturbed middle line breaks up where the Riemann
 // solver has a carbuncle.
 TEST(GodunovInvariant, APlaneShockStaysPlane) {
-  godunov::Options o;
+  gas::Options o;
   Tube t(even_axis(0, 20, 20), even_axis(0, 1, 1), even_axis(0, 120, 120), false, o);
   t.all_boundaries(BoundaryType::symmetry);
   const double mach = 6.0, p = (2.8 * mach * mach - 0.4) / 2.4;

@@ -9,7 +9,7 @@
 namespace ejecta {
 namespace {
 
-using godunov::GasState;
+using gas::GasState;
 using test::even_axis;
 using test::Tube;
 
@@ -134,8 +134,8 @@ class Manufactured {
   }
 
  private:
-  static godunov::Options options(bool turbulent) {
-    godunov::Options o;
+  static gas::Options options(bool turbulent) {
+    gas::Options o;
     o.gas = {kGamma, kGasConstant};
     o.reference_pressure = 1.0;
     o.viscosity = kViscosity;

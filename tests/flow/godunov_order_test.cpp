@@ -8,7 +8,7 @@
 namespace ejecta {
 namespace {
 
-using godunov::GasState;
+using gas::GasState;
 using test::even_axis;
 using test::make_tube;
 using test::Tube;
@@ -61,7 +61,7 @@ double sound_wave(int cells, double amplitude) {
 /// Isentropic vortex of strength 5 in a box of 14, carried by (1, 1) for a while (Yee, Sandham & Djomehri
 /// 1999).
 double vortex(int cells, int first, int second) {
-  godunov::Options o;
+  gas::Options o;
   std::array<Axis, 3> a{even_axis(0, 1, 1), even_axis(0, 1, 1), even_axis(0, 1, 1)};
   a[static_cast<std::size_t>(first)] = a[static_cast<std::size_t>(second)] = even_axis(-7, 7, cells);
   Tube t(a[0], a[1], a[2], false, o);
@@ -118,7 +118,7 @@ TEST(GodunovOrder, TheVortexDoesNotCareForTheAxes) {
 
 /// Steady laminar diffusion of a shear u_y(x) = sin: decays with exp(-nu k^2 t).
 TEST(GodunovOrder, ShearDecaysAtTheViscousRate) {
-  godunov::Options o;
+  gas::Options o;
   o.viscosity = 0.02;
   auto t = make_tube(0, 48, o);
   t->all_boundaries(BoundaryType::periodic);

@@ -6,7 +6,7 @@
 namespace ejecta {
 namespace {
 
-using godunov::GasState;
+using gas::GasState;
 using test::ExactRiemann;
 using test::make_tube;
 using test::RiemannState;

@@ -11,14 +11,14 @@
 namespace ejecta {
 namespace {
 
-using godunov::GasState;
+using gas::GasState;
 using test::even_axis;
 using test::ExactRiemann;
 using test::make_tube;
 using test::Tube;
 
 TEST(GodunovWall, TakesThePressureOfItsCellUpToTheSpeedItsEnergyCanPayFor) {
-  const godunov::GasConstants gas(1.4, 287.05, 0.0);
+  const gas::GasConstants gas(1.4, 287.05, 0.0);
   const double c = std::sqrt(1.4), most = std::sqrt(2 / (1.4 * 0.4));
   for (const double mach : {-1.8, -0.5, 0.0, 0.01, 1.0, 1.8})
     EXPECT_EQ(wall_pressure(gas, 1, Real(mach * c), 1), 1);

@@ -1,11 +1,11 @@
 #pragma once
 #include <cmath>
 
-#include "flow/godunov/flux_kernel.hpp"
+#include "flow/gas/flux_kernel.hpp"
 
 /// Riemann solvers as pure functions of two states. Written so that two equal states at rest give a flux of
 /// exactly zero (momentum is counted from the reference pressure).
-namespace ejecta::godunov {
+namespace ejecta::gas {
 
 /// Speeds of the outer waves and of the contact between two states.
 struct WaveSpeeds {
@@ -116,4 +116,4 @@ struct HllcConvection {
   }
 };
 
-}  // namespace ejecta::godunov
+}  // namespace ejecta::gas

@@ -1,7 +1,7 @@
 #pragma once
 #include "flow/godunov/flux_hllc.hpp"
 
-namespace ejecta::godunov {
+namespace ejecta::gas {
 
 /// Pressure of a wall, difference to the reference, from the gas in its cell, of velocity `un` across it.
 ///
@@ -33,4 +33,4 @@ struct WallConvection {
   }
 };
 
-}  // namespace ejecta::godunov
+}  // namespace ejecta::gas

@@ -5,9 +5,9 @@
 
 #include "base/parallel.hpp"
 #include "flow/godunov/flux_wall.hpp"
-#include "flow/godunov/update_kernel.hpp"
+#include "flow/gas/update_kernel.hpp"
 
-namespace ejecta::godunov {
+namespace ejecta::gas {
 namespace {
 
 /// A stage of Runge-Kutta: weight of the step's start in it, and of its fluxes in the whole step.
@@ -86,4 +86,4 @@ void Solver::advance(double dt, CutCells&) {
   with_physics([&](auto physics) { run_stages<decltype(physics)>(dt); });
 }
 
-}  // namespace ejecta::godunov
+}  // namespace ejecta::gas

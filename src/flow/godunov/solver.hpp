@@ -1,7 +1,7 @@
 #pragma once
-#include "flow/godunov/gas_flow.hpp"
+#include "flow/gas/gas_flow.hpp"
 
-namespace ejecta::godunov {
+namespace ejecta::gas {
 
 /// Compressible flow, explicit in time: finite volumes, MUSCL, HLLC with a cure for the carbuncle, SSP
 /// Runge-Kutta (Gottlieb, Shu & Tadmor 2001).
@@ -23,4 +23,4 @@ class Solver : public GasFlow {
   Block start_;
 };
 
-}  // namespace ejecta::godunov
+}  // namespace ejecta::gas

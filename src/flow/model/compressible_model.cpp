@@ -14,7 +14,7 @@
 namespace ejecta {
 namespace {
 
-using namespace godunov;
+using namespace gas;
 
 class CompressibleModel : public FlowModel {
  public:

@@ -7,11 +7,11 @@
 #include <utility>
 
 #include "case/initial.hpp"
+#include "flow/gas/turbulence_kernel.hpp"
 #include "flow/godunov/solver.hpp"
-#include "flow/godunov/turbulence_kernel.hpp"
 #include "flow/piso/compressible.hpp"
 
-namespace ejecta::godunov {
+namespace ejecta::gas {
 namespace {
 
 /// Turbulence of air called still, m2/s2; its epsilon is such that its eddy viscosity equals the molecular
@@ -198,7 +198,7 @@ std::unique_ptr<GasFlow> solver_from_case(const Case& c, const Grid& grid, std::
   options.reference_pressure = reference_pressure(c, grid, initial);
   std::unique_ptr<GasFlow> solver;
   if (c.flow.solver == FlowSolver::compressible_piso)
-    solver = std::make_unique<piso::Compressible>(grid, options);
+    solver = std::make_unique<gas::Compressible>(grid, options);
   else solver = std::make_unique<Solver>(grid, options);
   for (int face = 0; face < 6; ++face) {
     const BoundarySpec& b = c.boundary[static_cast<std::size_t>(face)];
@@ -223,4 +223,4 @@ std::unique_ptr<GasFlow> solver_from_case(const Case& c, const Grid& grid, std::
   return solver;
 }
 
-}  // namespace ejecta::godunov
+}  // namespace ejecta::gas

@@ -6,10 +6,10 @@
 
 #include "case/case.hpp"
 #include "case/expression.hpp"
-#include "flow/godunov/gas_flow.hpp"
+#include "flow/gas/gas_flow.hpp"
 #include "flow/model/inflow.hpp"
 
-namespace ejecta::godunov {
+namespace ejecta::gas {
 
 /// What a case asks of the compressible solver.
 Options options_from_case(const Case& c);
@@ -76,4 +76,4 @@ class FormulaFaces {
 /// (Boundaries::set_states).
 std::unique_ptr<GasFlow> solver_from_case(const Case& c, const Grid& grid, std::vector<DrivenInlet>& inlets);
 
-}  // namespace ejecta::godunov
+}  // namespace ejecta::gas

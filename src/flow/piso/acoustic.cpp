@@ -8,7 +8,7 @@
 #include "flow/stencil.hpp"
 #include "grid/faces.hpp"
 
-namespace ejecta::piso {
+namespace ejecta::gas {
 namespace {
 
 /// The residual left over, of the first one without any change of pressure. It is not lost: mass, momentum
@@ -385,4 +385,4 @@ void Acoustic::let_waves_out(const Boundaries& boundaries, Block& middle) const 
   });
 }
 
-}  // namespace ejecta::piso
+}  // namespace ejecta::gas

@@ -1,11 +1,9 @@
 #pragma once
 #include "flow/cut_cells.hpp"
-#include "flow/godunov/boundary.hpp"
-#include "flow/godunov/geometry.hpp"
+#include "flow/gas/boundary.hpp"
+#include "flow/gas/geometry.hpp"
 
-namespace ejecta::piso {
-
-using namespace godunov;
+namespace ejecta::gas {
 
 /// The implicit part of a step of the compressible PISO. From the middle of the step as flow and friction
 /// alone make it, velocities q of the faces and the change dp of the pressure such that
@@ -50,7 +48,7 @@ class Acoustic {
   };
   static Real leaving(const BlockView<const Real>& w, const BoundaryCell& b, Real impedance);
   void measure_faces(const Block& middle, Real dt);
-  void move_to_open(const CutCells& cut, const godunov::Block& middle);
+  void move_to_open(const CutCells& cut, const Block& middle);
   void close_faces(const CutCells& cut);
   void leave_to_fluid(const CutCells& cut, const Block& middle, Real dt);
   void reopen_faces(const CutCells& cut);
@@ -77,4 +75,4 @@ class Acoustic {
   double last_dt_ = 0.0;  ///< s, of change_
 };
 
-}  // namespace ejecta::piso
+}  // namespace ejecta::gas

@@ -1,10 +1,8 @@
 #pragma once
-#include "flow/godunov/flux_kernel.hpp"
+#include "flow/gas/flux_kernel.hpp"
 
 /// Kernels of the compressible PISO besides those it shares with Godunov's method.
-namespace ejecta::piso {
-
-using namespace godunov;
+namespace ejecta::gas {
 
 /// What the velocities of the faces carry and the pressure does, as a convection of FluxKernel: q times the
 /// upwind side, the mean pressure as a force, (p + H_ref) q as its power.
@@ -150,4 +148,4 @@ struct PressureKernel {
   }
 };
 
-}  // namespace ejecta::piso
+}  // namespace ejecta::gas

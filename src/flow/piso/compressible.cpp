@@ -4,14 +4,14 @@
 #include <cmath>
 
 #include "base/parallel.hpp"
-#include "flow/godunov/update_kernel.hpp"
+#include "flow/gas/update_kernel.hpp"
 #include "flow/piso/carried.hpp"
 #include "flow/turbulence/closures.hpp"
 
-namespace ejecta::piso {
+namespace ejecta::gas {
 namespace {
 
-using namespace godunov;
+using namespace gas;
 
 /// Inverse of the convective step of a cell, of its explicit diffusive step, and its viscosity (m2/s). The
 /// speed on an axis is the largest in the cell and its two neighbours. What the pressure adds within the
@@ -246,4 +246,4 @@ std::vector<NamedField> Compressible::state() {
   return fields;
 }
 
-}  // namespace ejecta::piso
+}  // namespace ejecta::gas

@@ -1,10 +1,10 @@
 #pragma once
-#include "flow/godunov/gas_flow.hpp"
+#include "flow/gas/gas_flow.hpp"
 #include "flow/piso/acoustic.hpp"
 #include "flow/piso/cut_gas.hpp"
-#include "flow/piso/increment_smoother.hpp"
+#include "flow/increment_smoother.hpp"
 
-namespace ejecta::piso {
+namespace ejecta::gas {
 
 /// Compressible flow at the pace of the flow, for Mach numbers up to about 0.8: a step is limited by |u|
 /// alone. One step, conservative and centred in time:
@@ -17,9 +17,9 @@ namespace ejecta::piso {
 /// Splitting of the pressure from what is carried: Kwatra et al. 2009 (J. Comput. Phys. 228:4146); predictor
 /// and one implicit solve for the velocities of the faces: Bell, Colella & Glaz 1989 (J. Comput. Phys.
 /// 85:257).
-class Compressible : public godunov::GasFlow {
+class Compressible : public GasFlow {
  public:
-  Compressible(const Grid& grid, const godunov::Options& options);
+  Compressible(const Grid& grid, const Options& options);
 
   /// courant / max over cells of sum over axes of |u|/h, with the speed that the present pressure, or as much
   /// as acted in the last step, can add; laminar: and 2 nu/h^2
@@ -41,10 +41,10 @@ class Compressible : public godunov::GasFlow {
   Acoustic acoustic_;
   CutGas cut_gas_;
   IncrementSmoother smoother_;
-  godunov::Block start_, middle_;
+  Block start_, middle_;
   bool had_solids_ = true;
   double growth_ = 0.0;  ///< 1/s, rate of GrowthKernel after the last step; negative: not known yet
   double largest_nu_ = 0.0, explicit_dt_ = 1e300;  ///< m2/s, s: of the last stable_dt()
 };
 
-}  // namespace ejecta::piso
+}  // namespace ejecta::gas

@@ -7,9 +7,9 @@
 #include "flow/cut_ghosts.hpp"
 #include "flow/turbulence/wall_cell.hpp"
 
-namespace ejecta::piso {
+namespace ejecta::gas {
 
-using namespace godunov;
+using namespace gas;
 
 namespace {
 
@@ -242,4 +242,4 @@ CutGas::Given CutGas::given(const CutCells& cut, const Block& start, double dt) 
   return sum;
 }
 
-}  // namespace ejecta::piso
+}  // namespace ejecta::gas

@@ -8,7 +8,7 @@
 #include "flow/cut_cells.hpp"
 #include "flow/piso/cut_flow.hpp"
 #include "flow/piso/cut_pressure.hpp"
-#include "flow/piso/increment_smoother.hpp"
+#include "flow/increment_smoother.hpp"
 #include "flow/piso/momentum.hpp"
 #include "flow/poisson/fast_diagonal.hpp"
 #include "flow/turbulence/two_equation.hpp"

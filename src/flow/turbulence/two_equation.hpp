@@ -4,7 +4,7 @@
 
 #include "flow/boundary.hpp"
 #include "flow/cut_cells.hpp"
-#include "flow/piso/increment_smoother.hpp"
+#include "flow/increment_smoother.hpp"
 #include "flow/turbulence/solid_distance.hpp"
 #include "grid/grid.hpp"
 

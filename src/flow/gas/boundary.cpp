@@ -1,4 +1,4 @@
-#include "flow/godunov/boundary.hpp"
+#include "flow/gas/boundary.hpp"
 
 #include <fmt/format.h>
 
@@ -9,7 +9,7 @@
 #include "base/error.hpp"
 #include "base/parallel.hpp"
 
-namespace ejecta::godunov {
+namespace ejecta::gas {
 namespace {
 
 /// Relaxation of a transmissive face to the far pressure, of c/L (Poinsot & Lele 1992; Rudy & Strikwerda
@@ -238,4 +238,4 @@ void Boundaries::fill(Block& w) const {
   }
 }
 
-}  // namespace ejecta::godunov
+}  // namespace ejecta::gas

@@ -1,9 +1,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "flow/godunov/boundary.hpp"
+#include "flow/gas/boundary.hpp"
 
-namespace ejecta::godunov {
+namespace ejecta::gas {
 namespace {
 
 /// Mirror image: the normal velocity changes sign.
@@ -153,4 +153,4 @@ GhostStates ghost_states(const Condition& condition, const GasConstants& gas, co
   return {mirrored(first), mirrored(second)};
 }
 
-}  // namespace ejecta::godunov
+}  // namespace ejecta::gas

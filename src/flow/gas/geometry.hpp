@@ -4,7 +4,7 @@
 
 #include "grid/grid.hpp"
 
-namespace ejecta::godunov {
+namespace ejecta::gas {
 
 /// Lengths along one axis that the kernels need besides the grid's Metrics, indexable from -kGhosts to n +
 /// kGhosts.
@@ -29,4 +29,4 @@ class Geometry {
   std::array<std::vector<Real>, 15> storage_;
 };
 
-}  // namespace ejecta::godunov
+}  // namespace ejecta::gas

@@ -1,4 +1,4 @@
-#include "flow/piso/increment_smoother.hpp"
+#include "flow/increment_smoother.hpp"
 
 #include <algorithm>
 

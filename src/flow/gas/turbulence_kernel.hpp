@@ -1,11 +1,11 @@
 #pragma once
 #include <limits>
 
-#include "flow/godunov/geometry.hpp"
-#include "flow/godunov/state.hpp"
+#include "flow/gas/geometry.hpp"
+#include "flow/gas/state.hpp"
 #include "flow/turbulence/closures.hpp"
 
-namespace ejecta::godunov {
+namespace ejecta::gas {
 
 /// What the sources of the turbulent quantities need of one point.
 struct TurbulencePoint {
@@ -183,4 +183,4 @@ struct TurbulenceKernel {
   static constexpr Real kMostViscosityRatio = Real(1e5);
 };
 
-}  // namespace ejecta::godunov
+}  // namespace ejecta::gas

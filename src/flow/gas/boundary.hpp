@@ -5,11 +5,11 @@
 #include <vector>
 
 #include "case/case.hpp"
-#include "flow/gas.hpp"
-#include "flow/godunov/state.hpp"
+#include "flow/gas/state.hpp"
+#include "flow/ideal_gas.hpp"
 #include "grid/grid.hpp"
 
-namespace ejecta::godunov {
+namespace ejecta::gas {
 
 /// State of a gas in SI units, pressure absolute.
 struct GasState {
@@ -98,4 +98,4 @@ class Boundaries {
   std::vector<Condition> conditions_;
 };
 
-}  // namespace ejecta::godunov
+}  // namespace ejecta::gas

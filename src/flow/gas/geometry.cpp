@@ -1,10 +1,10 @@
-#include "flow/godunov/geometry.hpp"
+#include "flow/gas/geometry.hpp"
 
 #include <cmath>
 
 #include "base/simd.hpp"
 
-namespace ejecta::godunov {
+namespace ejecta::gas {
 
 Geometry::Geometry(const Grid& grid) {
   for (int d = 0; d < 3; ++d) {
@@ -35,4 +35,4 @@ Geometry::Geometry(const Grid& grid) {
   }
 }
 
-}  // namespace ejecta::godunov
+}  // namespace ejecta::gas

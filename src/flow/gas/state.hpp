@@ -8,7 +8,7 @@
 /// What the compressible solver keeps in a cell. Pressure is held as the difference to a reference pressure,
 /// and the energy as that to gas at rest at this pressure: air at rest is exactly zero, so that in float
 /// small disturbances keep their digits.
-namespace ejecta::godunov {
+namespace ejecta::gas {
 
 /// Order of the components in a Block. Conserved / primitive: density; three momenta / velocities; energy
 /// p'/(gamma-1) + rho u^2/2 / pressure p'; rho k / k; rho e / e with e the second turbulent quantity (epsilon
@@ -71,4 +71,4 @@ struct GasConstants {
   }
 };
 
-}  // namespace ejecta::godunov
+}  // namespace ejecta::gas

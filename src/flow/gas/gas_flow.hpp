@@ -3,14 +3,14 @@
 #include <vector>
 
 #include "flow/cut_cells.hpp"
-#include "flow/godunov/boundary.hpp"
-#include "flow/godunov/flux_kernel.hpp"
-#include "flow/godunov/geometry.hpp"
-#include "flow/godunov/turbulence_kernel.hpp"
+#include "flow/gas/boundary.hpp"
+#include "flow/gas/flux_kernel.hpp"
+#include "flow/gas/geometry.hpp"
+#include "flow/gas/turbulence_kernel.hpp"
 #include "flow/turbulence/solid_distance.hpp"
 #include "grid/faces.hpp"
 
-namespace ejecta::godunov {
+namespace ejecta::gas {
 
 /// What the compressible solver is asked to solve.
 struct Options {
@@ -166,4 +166,4 @@ void GasFlow::fluxes(const Block& primitive, const Convection& convection) {
   if (grid_.active(2)) sweep<2, P>(faces_along(grid_, 2), primitive, convection);
 }
 
-}  // namespace ejecta::godunov
+}  // namespace ejecta::gas

@@ -1,10 +1,10 @@
 #pragma once
-#include "flow/godunov/flux_viscous.hpp"
-#include "flow/godunov/geometry.hpp"
-#include "flow/godunov/limiter.hpp"
-#include "flow/godunov/state.hpp"
+#include "flow/gas/flux_viscous.hpp"
+#include "flow/gas/geometry.hpp"
+#include "flow/gas/limiter.hpp"
+#include "flow/gas/state.hpp"
 
-namespace ejecta::godunov {
+namespace ejecta::gas {
 
 /// What a sweep carries: known when it is compiled, so that a laminar plane flow pays for nothing else.
 template <bool Viscous, bool Turbulent, bool Across>
@@ -159,4 +159,4 @@ struct FluxKernel {
   }
 };
 
-}  // namespace ejecta::godunov
+}  // namespace ejecta::gas

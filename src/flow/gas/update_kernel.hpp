@@ -1,7 +1,7 @@
 #pragma once
-#include "flow/godunov/flux_kernel.hpp"
+#include "flow/gas/flux_kernel.hpp"
 
-namespace ejecta::godunov {
+namespace ejecta::gas {
 
 /// Density, velocity and pressure of conserved values, into cell `o` of `w`. Momentum across counts where P
 /// says so.
@@ -76,4 +76,4 @@ struct UpdateKernel {
   }
 };
 
-}  // namespace ejecta::godunov
+}  // namespace ejecta::gas

@@ -1,7 +1,7 @@
 #pragma once
 #include "base/parallel.hpp"
 
-namespace ejecta::godunov {
+namespace ejecta::gas {
 
 /// Velocity gradients on a face; n along the sweep, t and s across it. `hoop` is u_r/r in axisymmetric
 /// geometry.
@@ -24,4 +24,4 @@ EJECTA_KERNEL FaceStress stress_newtonian(Real viscosity, const FaceGradients& g
           viscosity * (g.ns + g.sn)};
 }
 
-}  // namespace ejecta::godunov
+}  // namespace ejecta::gas

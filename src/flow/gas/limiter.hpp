@@ -4,7 +4,7 @@
 #include "base/parallel.hpp"
 
 /// Slope limiters: the slope in a cell from the slopes towards its two neighbours. Branch-free.
-namespace ejecta::godunov {
+namespace ejecta::gas {
 
 /// Harmonic mean, 2ab/(a+b) (van Leer 1974); smooth, second order away from extrema.
 EJECTA_KERNEL Real limiter_van_leer(Real a, Real b) {
@@ -20,4 +20,4 @@ EJECTA_KERNEL Real limiter_monotonised_central(Real a, Real b) {
   return a * b > 0 ? std::copysign(size, a) : Real(0);
 }
 
-}  // namespace ejecta::godunov
+}  // namespace ejecta::gas

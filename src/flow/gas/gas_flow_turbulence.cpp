@@ -2,9 +2,9 @@
 #include <cmath>
 
 #include "base/parallel.hpp"
-#include "flow/godunov/gas_flow.hpp"
+#include "flow/gas/gas_flow.hpp"
 
-namespace ejecta::godunov {
+namespace ejecta::gas {
 
 void GasFlow::set_turbulence_constants() {
   if (options_.turbulence == TurbulenceModel::k_omega_sst) {
@@ -70,4 +70,4 @@ void GasFlow::advance_turbulence(double dt, const Dilatation& dilatation, const 
   else run_turbulence<false, false>(dt, dilatation);
 }
 
-}  // namespace ejecta::godunov
+}  // namespace ejecta::gas

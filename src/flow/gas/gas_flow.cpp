@@ -1,4 +1,4 @@
-#include "flow/godunov/gas_flow.hpp"
+#include "flow/gas/gas_flow.hpp"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,7 @@
 #include "base/error.hpp"
 #include "base/parallel.hpp"
 
-namespace ejecta::godunov {
+namespace ejecta::gas {
 
 Block GasFlow::make_block(const Grid& grid) {
   Block b;
@@ -147,4 +147,4 @@ std::vector<NamedField> GasFlow::state() {
   return fields;
 }
 
-}  // namespace ejecta::godunov
+}  // namespace ejecta::gas
