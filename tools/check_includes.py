@@ -6,7 +6,7 @@
 * No header says "using namespace" at its top level.
 * No OpenMP, MPI or GPU word stands outside src/base.
 * Only src/app ends the program or prints.
-* Citations of the form [@key] are in docs/references.bib.
+* Works cited as "Issa 1986" or "Clift, Grace & Weber 1978" are in docs/references.bib.
 * Headers start with #pragma once.
 
 Usage: tools/check_includes.py [ROOT]; prints what is wrong and exits 1 if anything is.
@@ -20,7 +20,11 @@ INCLUDE = re.compile(r'^\s*#\s*include\s+"([^"]+)"', re.M)
 TABLE_ROW = re.compile(r"^\|([^|]+)\|([^|]+)\|\s*$", re.M)
 PARALLEL = re.compile(r"#\s*pragma\s+omp|\bomp_\w+\(|\bMPI_\w+|\bcuda\w+\(")
 ENDS_OR_PRINTS = re.compile(r"\b(?:std::)?(?:exit|abort|_Exit|quick_exit)\s*\(|\bstd::c(?:out|err)\b|\bfmt::print\s*\(|\bprintf\s*\(")
-CITATION = re.compile(r"\[@([\w:-]+)\]")
+CITATION = re.compile(
+    r"([A-Z][a-z]+)(?:,? (?:&|and) (?:van )?[A-Z][a-z]+|, (?:van )?[A-Z][a-z]+,? & (?:van )?[A-Z][a-z]+| et al\.)? "
+    r"((?:19|20)\d\d)\b"
+)
+ENTRY = re.compile(r"author\s*=\s*\{([^}]*)\}.*?year\s*=\s*\{?(\d{4})", re.S)
 COMMENT = re.compile(r"//[^\n]*|/\*.*?\*/", re.S)
 STRING = re.compile(r'R"(\w*)\((?:.|\n)*?\)\1"|"(?:\\.|[^"\\\n])*"')
 
@@ -93,13 +97,13 @@ def complaints(root):
         yield "folders in a circle: " + " -> ".join(str(folder) for folder in way + way[:1])
 
     bibliography = root / "docs" / "references.bib"
-    known = set(re.findall(r"@\w+\{([^,\s]+),", bibliography.read_text())) if bibliography.exists() else set()
-    documents = [p for p in sorted((root / "docs").rglob("*.md"))] if (root / "docs").is_dir() else []
-    for path in sources + documents:
-        text = path.read_text()
-        for match in CITATION.finditer(text):
-            if match.group(1) not in known:
-                yield f"{path.relative_to(root)}:{line_of(text, match.start())}: no entry {match.group(1)} in docs/references.bib"
+    works = ENTRY.findall(bibliography.read_text()) if bibliography.exists() else []
+    theory = [p for folder in ("theory", "decisions") for p in sorted((root / "docs" / folder).glob("*.md"))]
+    for path in sources + theory:
+        text = re.sub(r"\n\s*///? ?", " ", path.read_text())  # a comment goes on in the next line
+        for author, year in CITATION.findall(text):
+            if not any(author in authors and year == of for authors, of in works):
+                yield f"{path.relative_to(root)}: no entry {author} {year} in docs/references.bib"
 
 
 def main():

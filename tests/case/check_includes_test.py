@@ -15,10 +15,10 @@ WRONG = {
     "dem/quits.cpp": ("void f() { exit(1); }\n", "only app/ ends"),
     "dem/law.hpp": ("int law();\n", "starts with #pragma once"),
     "dem/opens.hpp": ("#pragma once\nusing namespace base;\n", "using namespace in a header"),
-    "dem/cites.cpp": ("// [@nobody:1900]\n", "no entry nobody:1900"),
+    "dem/cites.cpp": ("// as Nobody & Someone 1900\n", "no entry Nobody 1900"),
 }
 RIGHT = {
-    "dem/fine.cpp": '#include "base/real.hpp"\n// exit(1) in a comment; [@known]\nconst char* s = "exit(1)";\n',
+    "dem/fine.cpp": '#include "base/real.hpp"\n// exit(1) in a comment; as Known et al. 1950\nconst char* s = "exit(1)";\n',
     "base/real.hpp": "#pragma once\n",
     "app/main.cpp": '#include "dem/law.hpp"\nint main() { exit(0); }\n',
 }
@@ -29,7 +29,7 @@ def check(files):
         root = pathlib.Path(folder)
         (root / "ARCHITECTURE.md").write_text(TABLE)
         (root / "docs").mkdir()
-        (root / "docs" / "references.bib").write_text("@article{known,\n}\n")
+        (root / "docs" / "references.bib").write_text("@article{known1950,\n  author={Known, A.}, year={1950}\n}\n")
         for room in ("base", "dem", "app"):
             (root / "src" / room).mkdir(parents=True)
         for name, text in files.items():
