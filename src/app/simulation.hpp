@@ -20,12 +20,6 @@ struct RunOptions {
   bool sweep = false;  ///< `ejecta jet`: the jets of jet.sweep_pressures and jet.sweep_velocities instead
 };
 
-struct BenchOptions {
-  int threads = 0;
-  int steps = 20;    ///< timed steps
-  std::string only;  ///< "dem": bodies that touch; "settled": of these only settled spheres
-};
-
 /// "ejecta COMMAND CASE --set ...", as a shell takes it: what gives this run again.
 std::string command_line_of(const std::string& command, const Case& c, const RunOptions& options);
 
@@ -43,7 +37,4 @@ int jet_case(const Case& c, const RunOptions& options);
 /// jet.sweep_velocities, and for every pressure the velocity at which the incompressible jet carries the same
 /// momentum, and reads the same total pressure, at the stand-off. Returns an ExitCode.
 int sweep_jet(const Case& c, const RunOptions& options);
-/// Measures cell-steps per second on the standard case. Returns an ExitCode.
-int bench(const BenchOptions& options);
-
 }  // namespace ejecta

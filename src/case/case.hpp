@@ -353,8 +353,9 @@ struct DomainSpec {
 };
 
 struct Case {
-  std::string path;             ///< of the file it came from; relative names inside are relative to it
-  std::set<std::string> given;  ///< keys that the user wrote, e.g. "valve.rise_time", "body.0.size"
+  std::string path;                ///< of the file it came from; relative names inside are relative to it
+  std::vector<std::string> bases;  ///< paths of the files that it extends
+  std::set<std::string> given;     ///< keys that the user wrote, e.g. "valve.rise_time", "body.0.size"
   RunSpec run;
   EnvironmentSpec environment;
   FluidSpec fluid;

@@ -91,7 +91,8 @@ std::shared_ptr<const Source> read_base(const Source& source, const Node& extend
   }
 }
 
-Node parse(const std::shared_ptr<const Source>& source, std::vector<Problem>& problems, int depth) {
+Node parse(const std::shared_ptr<const Source>& source, std::vector<Problem>& problems,
+           std::vector<std::string>& bases, int depth) {
   Node root = parse_toml(source, problems);
   const Node* found = root.find(kExtends);
   if (!found) return root;
@@ -104,15 +105,17 @@ Node parse(const std::shared_ptr<const Source>& source, std::vector<Problem>& pr
   }
   const auto base = read_base(*source, extends, problems);
   if (!base) return root;
-  Node whole = parse(base, problems, depth + 1);
+  bases.push_back(base->name);
+  Node whole = parse(base, problems, bases, depth + 1);
   lay_over(whole, std::move(root));
   return whole;
 }
 
 }  // namespace
 
-Node parse_extended(const std::shared_ptr<const Source>& source, std::vector<Problem>& problems) {
-  return parse(source, problems, 0);
+Node parse_extended(const std::shared_ptr<const Source>& source, std::vector<Problem>& problems,
+                    std::vector<std::string>& bases) {
+  return parse(source, problems, bases, 0);
 }
 
 }  // namespace ejecta

@@ -1,5 +1,6 @@
 #pragma once
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "case/node.hpp"
@@ -17,6 +18,8 @@ inline constexpr const char* kExtendsHelp =
 
 /// Parses the TOML of a case laid over that of the case it extends: `extends = "base.toml"`, before the first
 /// section, relative to the file that says so (see kExtendsHelp).
-Node parse_extended(const std::shared_ptr<const Source>& source, std::vector<Problem>& problems);
+/// `bases`: receives the paths of the files that were extended.
+Node parse_extended(const std::shared_ptr<const Source>& source, std::vector<Problem>& problems,
+                    std::vector<std::string>& bases);
 
 }  // namespace ejecta

@@ -60,12 +60,12 @@ Case parse_case(const std::string& text, const std::string& name, const std::vec
                 std::vector<Problem>* warnings, const FurtherChecks& further) {
   check_text(text, name);
   std::vector<Problem> problems;
-  Node root = parse_extended(std::make_shared<Source>(Source{name, text}), problems);
+  Case c;
+  c.path = name;
+  Node root = parse_extended(std::make_shared<Source>(Source{name, text}), problems, c.bases);
   // Keys may be missing only because their line could not be read: say what is wrong with the rest, not that.
   const bool syntax_errors = !problems.empty();
   for (const std::string& assignment : overrides) apply_override(root, assignment, problems);
-  Case c;
-  c.path = name;
   read_case(root, c, problems);
   if (syntax_errors) std::erase_if(problems, [](const Problem& p) { return p.what == "missing"; });
 
@@ -115,8 +115,26 @@ Case with_absolute_files(Case c) {
   return c;
 }
 
+namespace {
+
+/// What else the case of a computed jet is made of.
+std::vector<std::string> files_of_jet(const Case& c) {
+  try {
+    const Case jet = load_case(beside_case(c, c.jet.source_case));
+    std::vector<std::string> files = files_of(jet);
+    for (const std::string& base : jet.bases)
+      files.push_back(std::filesystem::absolute(base).lexically_normal().string());
+    return files;
+  } catch (const Error&) {
+    return {};  // the run says what is wrong with it
+  }
+}
+
+}  // namespace
+
 std::vector<std::string> files_of(const Case& c) {
   std::vector<std::string> files;
+  if (!c.jet.source_case.empty()) files = files_of_jet(c);
   const Case absolute = with_absolute_files(c);
   for_each_file(absolute, [&](const std::string& file) {
     if (!file.empty()) files.push_back(file);

@@ -30,8 +30,8 @@ std::string beside_case(const Case& c, const std::string& file);
 
 /// The same case with the names of its files made absolute, so that it can be read from another folder.
 Case with_absolute_files(Case c);
-/// The files that a case names (meshes, traces, paths, the jet's case, measured curves), each once, by
-/// absolute paths.
+/// The files that a case names (meshes, traces, paths, the jet's case and what that names and extends,
+/// measured curves), each once, by absolute paths.
 std::vector<std::string> files_of(const Case& c);
 
 }  // namespace ejecta

@@ -232,12 +232,11 @@ void BallContacts::compute_all(const Parts& parts, const Materials& materials, c
 void BallContacts::compute(const Parts& parts, const Materials& materials, const Domain& domain, double dt) {
   rolling_ = materials.any_rolling();
   share_energy(parts, materials, domain);
-  if (materials.law() == ContactLaw::linear)
-    rolling_ ? compute_all<LinearSpring, true>(parts, materials, domain, dt)
-             : compute_all<LinearSpring, false>(parts, materials, domain, dt);
-  else
-    rolling_ ? compute_all<HertzMindlin, true>(parts, materials, domain, dt)
-             : compute_all<HertzMindlin, false>(parts, materials, domain, dt);
+  with_law(materials.law(), [&](auto law) {
+    using Law = decltype(law);
+    if (rolling_) compute_all<Law, true>(parts, materials, domain, dt);
+    else compute_all<Law, false>(parts, materials, domain, dt);
+  });
 }
 
 /// What a group stores against the motion along the normal of each of its contacts, and how much of it is not
@@ -258,8 +257,7 @@ void BallContacts::share_energy(const Parts& parts, const Materials& materials, 
     c.radius = plane ? a.radius : a.radius * b.radius / (a.radius + b.radius);
     const PairConstants<double>& p =
         materials.pair(static_cast<int>(a.material), static_cast<int>(b.material));
-    return {near.normal, materials.law() == ContactLaw::linear ? LinearSpring::spring(c, p).energy
-                                                               : HertzMindlin::spring(c, p).energy};
+    return {near.normal, with_law(materials.law(), [&](auto law) { return law.spring(c, p).energy; })};
   };
   for_each_block(static_cast<int>(groups_.size()) - 1, kBlock, [&](int, int begin, int end) {
     thread_local std::vector<Spring> springs;

@@ -1,7 +1,13 @@
 #pragma once
+#include <cmath>
+#include <numbers>
+
+#include "case/case.hpp"
 #include "dem/lanes.hpp"
 
-/// Contact laws: pure functions of one contact (or of eight, T = Lanes). They never ask what touches what.
+/// Contact laws: pure functions of one contact (or of eight, T = Lanes). They never ask what touches what. A
+/// law is a struct with its normal spring, the ratio of its dashpots and how long a contact lasts; with_law()
+/// knows them all.
 namespace ejecta {
 
 /// Constants of a pair of materials.
@@ -61,6 +67,15 @@ struct HertzMindlin {
     s.stiffening = T{} + 0.5;
     return s;
   }
+  /// sqrt(tangential / tangent normal stiffness), 8 G* a over 2 E* a.
+  static double drag(const PairConstants<double>& p) { return std::sqrt(4.0 * p.shear / p.youngs); }
+  /// s, of an impact at `velocity` (m/s), reduced mass (kg) and radius (m): 2.9432 d/v with the deepest dent
+  /// d = (15 m v^2 / (16 E* sqrt(R)))^(2/5) (Timoshenko & Goodier 1970, 142).
+  static double contact_time(double mass, double radius, const PairConstants<double>& p, double velocity) {
+    const double depth = std::pow(15 * mass * velocity * velocity / (16 * p.youngs * std::sqrt(radius)), 0.4);
+    return 2.9432 * depth / velocity;
+  }
+  static constexpr bool kIsElastic = true;  ///< its stiffness is that of the materials
 };
 
 /// Cundall & Strack 1979, Geotechnique 29:47: F = k d, tangential stiffness 2/7 k (equal periods of a
@@ -75,7 +90,19 @@ struct LinearSpring {
     s.sharpness = T{} + 1.0;
     return s;
   }
+  static double drag(const PairConstants<double>&) { return std::sqrt(2.0 / 7.0); }
+  static double contact_time(double mass, double, const PairConstants<double>& p, double) {
+    return std::numbers::pi * std::sqrt(mass / p.stiffness);
+  }
+  static constexpr bool kIsElastic = false;
 };
+
+/// f(law) with the law that a case asks for.
+template <class F>
+decltype(auto) with_law(ContactLaw law, const F& f) {
+  if (law == ContactLaw::linear) return f(LinearSpring{});
+  return f(HertzMindlin{});
+}
 
 /// Dashpot gamma F sqrt(m/(2 E)) of a spring of force F and energy E: with u = sqrt(2 E) as coordinate the
 /// motion is that of a linear oscillator whatever the law, so that gamma alone sets the restitution

@@ -62,8 +62,7 @@ Materials::Materials(const Case& config)
       c.shear = 1 / ((2 - a.poisson_ratio) / shear_modulus(a) + (2 - b.poisson_ratio) / shear_modulus(b));
       c.stiffness = config.contact.linear_stiffness;
       c.damping = contact_damping(restitution, allow_tension_);
-      // Hertz-Mindlin: 8 G* a over 2 E* a; linear: 2/7.
-      c.drag = std::sqrt(law_ == ContactLaw::linear ? 2.0 / 7.0 : 4.0 * c.shear / c.youngs);
+      c.drag = with_law(law_, [&](auto law) { return law.drag(c); });
       c.friction = friction;
       c.rolling = rolling;
       pairs_.push_back(c);

@@ -97,8 +97,7 @@ struct SolidContacts::World {
     m.contact = {triple(t.normal), t.overlap, t.radius, 1.0 / (m.a.inverse_mass + m.b.inverse_mass),
                  triple(m.a.velocity - m.b.velocity)};
     const PairConstants<double>& p = constants(m);
-    m.spring = materials.law() == ContactLaw::linear ? LinearSpring::spring(m.contact, p)
-                                                     : HertzMindlin::spring(m.contact, p);
+    m.spring = with_law(materials.law(), [&](auto law) { return law.spring(m.contact, p); });
     return m;
   }
   const PairConstants<double>& constants(const Meeting& m) const {

@@ -8,6 +8,7 @@
 #include "base/state_reader.hpp"
 #include "flow/model/gas_from_case.hpp"
 #include "flow/model/incompressible_model.hpp"
+#include "flow/turbulence/scales.hpp"
 #include "grid/sampler.hpp"
 #include "jet/drive.hpp"
 #include "jet/inlet.hpp"
@@ -89,7 +90,7 @@ class IncompressibleAir : public JetAir {
     p.pressure = case_.environment.pressure + v[kPressure];
     p.density = flow_->density();
     p.k = v[kKinetic];
-    if (v[kEddy] > 0.0) p.epsilon = 0.09 * p.k * p.k / v[kEddy];
+    if (v[kEddy] > 0.0) p.epsilon = epsilon_with(p.k, v[kEddy]);
     return p;
   }
   JetFlow flux(int i, int j, int k) const override {

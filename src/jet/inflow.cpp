@@ -3,6 +3,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "flow/turbulence/scales.hpp"
+
 namespace ejecta {
 
 SelfSimilarJet::SelfSimilarJet(const JetSpec& jet, const ValveSpec& valve, double discharge_coefficient)
@@ -23,7 +25,7 @@ InflowState SelfSimilarJet::at(const Vec3& x, double equivalent_velocity) const 
   s.velocity = Vec3(r > 0.0 ? radial * dx / r : 0.0, r > 0.0 ? radial * dy / r : 0.0, centre * shape);
   s.k = 0.07 * centre * centre * shape;
   const double eddy_viscosity = centre * z / (8.0 * spread_);
-  s.epsilon = eddy_viscosity > 0.0 ? 0.09 * s.k * s.k / eddy_viscosity : 0.0;
+  s.epsilon = eddy_viscosity > 0.0 ? epsilon_with(s.k, eddy_viscosity) : 0.0;
   return s;
 }
 
@@ -36,8 +38,7 @@ InflowState NozzleInflow::at(double share, double velocity) const {
   InflowState s;
   s.velocity = Vec3(0, 0, share * velocity);
   s.k = 1.5 * std::pow(intensity_ * velocity, 2);
-  const double length = 0.07 * 2.0 * radius_;  // mixing length of pipe flow
-  s.epsilon = std::pow(0.09, 0.75) * std::pow(s.k, 1.5) / length;
+  s.epsilon = epsilon_of_pipe(s.k, 2.0 * radius_);
   return s;
 }
 

@@ -116,7 +116,7 @@ JetFlow JetModel::sum_flow(int k, double within) const {
       sum.mass += area * flux.mass;
       sum.momentum += area * flux.momentum;
     }
-  return {whole_jet_ * sum.mass, around_ * sum.momentum};
+  return {whole_jet_ * sum.mass, whole_jet_ * sum.momentum};
 }
 
 }  // namespace ejecta

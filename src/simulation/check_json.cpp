@@ -1,6 +1,7 @@
 #include <nlohmann/json.hpp>
 
 #include "case/copies.hpp"
+#include "case/extent.hpp"
 #include "case/words.hpp"
 #include "flow/model/flow_model.hpp"
 #include "jet/source.hpp"

@@ -87,6 +87,18 @@ TEST_F(Extends, FilesLieBesideTheCaseThatNamesThem) {
             scratch.path() / "own/own.stl");
 }
 
+TEST_F(Extends, TheFilesOfACaseAreThoseOfItsJetToo) {
+  write("jets/base.toml", base);
+  write("jets/jet.toml", "extends = \"base.toml\"\n");
+  const Case c = load_case(write("own.toml",
+                                 "[run]\nend_time = \"1 s\"\n[flow]\nsolver = \"none\"\n"
+                                 "[jet]\nsource_case = \"jets/jet.toml\"\n[[body]]\ndiameter = \"1 mm\"\n"));
+  std::vector<std::string> names;
+  for (const std::string& file : files_of(c))
+    names.push_back(std::filesystem::path(file).filename().string());
+  EXPECT_EQ(names, (std::vector<std::string>{"base.toml", "floor.stl", "jet.toml"}));
+}
+
 TEST_F(Extends, AnErrorIsShownWhereItStands) {
   std::string bad = base;
   bad.replace(bad.find("0.5"), 3, "-2");

@@ -1,9 +1,14 @@
+#include <fmt/format.h>
+
+#include <cstdio>
 #include <memory>
 
 #include "app/cli/case_options.hpp"
 #include "app/cli/commands.hpp"
+#include "app/exit_code.hpp"
 #include "app/simulation.hpp"
 #include "base/error.hpp"
+#include "bench/bench.hpp"
 
 /// The commands that compute: run, plan, jet, bench.
 namespace ejecta {
@@ -93,7 +98,15 @@ void add_bench(CLI::App& app, Action& action) {
       ->capture_default_str();
   command->add_option("--only", o->only, "Measure nothing else")->check(CLI::IsMember({"dem", "settled"}));
   command->footer("Example:\n  ejecta bench --threads 2\n  ejecta bench --threads 1 --only dem");
-  command->callback([o, &action] { action = [o] { return bench(*o); }; });
+  command->callback([o, &action] {
+    action = [o] {
+      bench(*o, [](const std::string& line) {
+        fmt::print("{}\n", line);
+        std::fflush(stdout);
+      });
+      return int{exit_done};
+    };
+  });
 }
 
 }  // namespace ejecta

@@ -171,16 +171,13 @@ struct TurbulenceKernel {
       after = advance_k_epsilon(p, dt, RoundJet, compressible, dilatation.pressure_change != nullptr);
       mut = rho * k_epsilon::kCmu * after.k * realizable_time(after.k, after.e, p.strain2);
     }
-    const Real most = kMostViscosityRatio * viscosity;
+    const Real most = kLargestViscosityRatio * viscosity;
     eddy_viscosity[o] = mut < most ? mut : most;
     next.at(kK, o) = after.k;
     next.at(kE, o) = after.e;
     u.at(kK, o) = rho * after.k;
     u.at(kE, o) = rho * after.e;
   }
-
-  /// Bound of mu_t/mu, against quotients of vanishing k and e
-  static constexpr Real kMostViscosityRatio = Real(1e5);
 };
 
 }  // namespace ejecta::gas

@@ -4,8 +4,8 @@
 #include <span>
 
 #include "base/parallel.hpp"
-#include "flow/godunov/flux_wall.hpp"
 #include "flow/gas/update_kernel.hpp"
+#include "flow/godunov/flux_wall.hpp"
 
 namespace ejecta::gas {
 namespace {

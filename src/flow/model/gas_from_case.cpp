@@ -10,6 +10,7 @@
 #include "flow/gas/turbulence_kernel.hpp"
 #include "flow/godunov/solver.hpp"
 #include "flow/piso/compressible.hpp"
+#include "flow/turbulence/scales.hpp"
 
 namespace ejecta::gas {
 namespace {
@@ -17,12 +18,6 @@ namespace {
 /// Turbulence of air called still, m2/s2; its epsilon is such that its eddy viscosity equals the molecular
 /// one.
 constexpr double kStillK = 1e-4;
-
-/// Dissipation of the turbulence that enters: mixing length 0.07 d of a pipe (Versteeg & Malalasekera,
-/// section 3.7.2), epsilon = C_mu^(3/4) k^(3/2) / l
-double inlet_epsilon(double k, double diameter) {
-  return std::pow(0.09, 0.75) * std::pow(k, 1.5) / (0.07 * diameter);
-}
 
 /// Initial gas at a point: what the regions of the case that hold it say together.
 class InitialGas {
@@ -187,7 +182,7 @@ void drive(GasFlow& flow, const std::vector<DrivenInlet>& inlets, const Supply& 
     condition.total_temperature = supply.total_temperature;
     if (supply.fluctuation <= 0.0) continue;
     condition.state.k = 1.5 * supply.fluctuation * supply.fluctuation;
-    condition.state.e = inlet_epsilon(condition.state.k, 2.0 * inlet.radius);
+    condition.state.e = epsilon_of_pipe(condition.state.k, 2.0 * inlet.radius);
     if (omega) condition.state.e = omega_of(condition.state.k, condition.state.e);
   }
 }

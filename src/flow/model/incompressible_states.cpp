@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "base/error.hpp"
+#include "flow/turbulence/scales.hpp"
 
 namespace ejecta {
 namespace {
@@ -13,9 +14,9 @@ BoundaryState jet_state(const Grid& grid, const StillAir& air, const Inflow& inf
   BoundaryState s;
   for (int d = 0; d < 3; ++d) s.velocity[static_cast<std::size_t>(d)] = static_cast<Real>(jet.velocity[d]);
   const double k = std::max(jet.k, air.k);
-  const double epsilon = jet.k > air.k ? jet.epsilon : 0.09 * k * k / air.nu;
+  const double epsilon = jet.k > air.k ? jet.epsilon : epsilon_with(k, air.nu);
   s.k = static_cast<Real>(k);
-  s.dissipation = static_cast<Real>(air.omega ? epsilon / (0.09 * k) : epsilon);
+  s.dissipation = static_cast<Real>(air.omega ? epsilon / (kCmu * k) : epsilon);
   return s;
 }
 
@@ -26,7 +27,7 @@ StillAir::StillAir(const Case& c)
       nu(c.fluid.viscosity / c.fluid.density),
       omega(c.flow.turbulence == TurbulenceModel::k_omega_sst),
       k(1e-4),
-      dissipation(omega ? k / nu : 0.09 * k * k / nu) {}
+      dissipation(omega ? k / nu : epsilon_with(k, nu)) {}
 
 StateFormula::StateFormula(const StateSpec& s, const StillAir& air) : still_(air) {
   if (s.velocity)
@@ -49,8 +50,8 @@ StateFormula::Turbulence StateFormula::turbulence_at(const Vec3& x, double t) co
   };
   if (k_) s.k = value(*k_, still_.k);
   if (epsilon_) {
-    const double epsilon = value(*epsilon_, 0.09 * still_.k * still_.k / still_.nu);
-    s.dissipation = still_.omega ? epsilon / (0.09 * s.k) : epsilon;
+    const double epsilon = value(*epsilon_, epsilon_with(still_.k, still_.nu));
+    s.dissipation = still_.omega ? epsilon / (kCmu * s.k) : epsilon;
   }
   return s;
 }

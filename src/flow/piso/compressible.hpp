@@ -1,8 +1,8 @@
 #pragma once
 #include "flow/gas/gas_flow.hpp"
+#include "flow/increment_smoother.hpp"
 #include "flow/piso/acoustic.hpp"
 #include "flow/piso/cut_gas.hpp"
-#include "flow/increment_smoother.hpp"
 
 namespace ejecta::gas {
 

@@ -109,7 +109,7 @@ void CutGas::advance_turbulence(const CutCells& cut, bool sst, const Block& befo
     for_each_carrier(cut, [&](std::size_t, const CutCell& c) {
       const Real rho = w[kRho](c.i, c.j, c.k), nu = viscosity_ / rho;
       const Real k = std::max(before[kK](c.i, c.j, c.k), kMinimalK),
-                 e = std::max(before[kE](c.i, c.j, c.k), kMinimalSecond);
+                 e = std::max(before[kE](c.i, c.j, c.k), kMinimalDissipation);
       const Real nut = wall_eddy_viscosity<model>(k, e, nu);
       const SourcePoint p{k, e, k, e, 0, 0, nut, 0, Real(1), 0};
       const SourceResult r = advance_wall_sources<model>(grid_, cut, c, velocity, p, nu, dt);

@@ -6,9 +6,9 @@
 
 #include "flow/boundary.hpp"
 #include "flow/cut_cells.hpp"
+#include "flow/increment_smoother.hpp"
 #include "flow/piso/cut_flow.hpp"
 #include "flow/piso/cut_pressure.hpp"
-#include "flow/increment_smoother.hpp"
 #include "flow/piso/momentum.hpp"
 #include "flow/poisson/fast_diagonal.hpp"
 #include "flow/turbulence/two_equation.hpp"

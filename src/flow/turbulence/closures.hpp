@@ -27,6 +27,10 @@ inline Real vortex_stretching(const VelocityGradient& v) {
                        x * z * (v.xz + v.zx) + y * z * (v.yz + v.zy));
 }
 
+/// nu_t / nu is limited to this (a jet of a sorter has about 1500), so that quotients of the ambient's
+/// vanishing k and epsilon cannot set the time step.
+inline constexpr Real kLargestViscosityRatio = Real(1e4);
+
 /// Standard k-epsilon (Launder & Spalding 1974), with Pope's round-jet term.
 namespace k_epsilon {
 inline constexpr Real kCmu = Real(0.09), kC1 = Real(1.44), kC2 = Real(1.92), kC3 = Real(0.79);

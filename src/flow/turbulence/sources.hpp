@@ -9,10 +9,6 @@ namespace ejecta {
 
 inline constexpr Real kMinimalK = kLeastPositive, kMinimalDissipation = kLeastPositive;
 
-/// nu_t / nu is limited to this (a jet of a sorter has about 1500), so that the ambient's arbitrary epsilon
-/// cannot set the time step.
-inline constexpr Real kLargestViscosityRatio = Real(1e4);
-
 /// What the sources of one cell need.
 struct SourcePoint {
   Real k, dissipation;                  ///< at the beginning of the step

@@ -1,4 +1,4 @@
-#include "app/bench_dem.hpp"
+#include "bench/bench_dem.hpp"
 
 #include <fmt/format.h>
 
@@ -84,8 +84,8 @@ Particles belt(int count) {
   });
 }
 
-/// Lets the bodies move, then prints one line.
-void measure(const char* name, Particles p, int settle, int steps) {
+/// Lets the bodies move, then tells one line.
+void measure(const char* name, Particles p, int settle, int steps, const Note& tell) {
   p.advance(settle * kStep);
   const double count = static_cast<double>(p.bodies().size());
   constexpr int kParts = 10;
@@ -105,27 +105,26 @@ void measure(const char* name, Particles p, int settle, int steps) {
   const double parts[] = {t.listing - before.listing, t.balls - before.balls, t.solids - before.solids,
                           t.motion - before.motion};
   const double all = parts[0] + parts[1] + parts[2] + parts[3];
-  fmt::print("{:<34}{:>9.3f}{:>10.2f}{:>10.0f}{:>9.0f}{:>8.0f}{:>8.0f}{:>8.0f}{:>8.0f}{:>8.1f}\n", name,
-             step * 1e3, count / step * 1e-6 / thread_count(), contacts,
-             step * thread_count() / std::max(contacts, 1.0) * 1e9, 100 * parts[1] / all,
-             100 * parts[2] / all, 100 * parts[3] / all, 100 * parts[0] / all,
-             double(steps) / std::max<double>(1.0, static_cast<double>(p.lists() - lists)));
+  tell(fmt::format("{:<34}{:>9.3f}{:>10.2f}{:>10.0f}{:>9.0f}{:>8.0f}{:>8.0f}{:>8.0f}{:>8.0f}{:>8.1f}", name,
+                   step * 1e3, count / step * 1e-6 / thread_count(), contacts,
+                   step * thread_count() / std::max(contacts, 1.0) * 1e9, 100 * parts[1] / all,
+                   100 * parts[2] / all, 100 * parts[3] / all, 100 * parts[0] / all,
+                   double(steps) / std::max<double>(1.0, static_cast<double>(p.lists() - lists))));
 }
 
 }  // namespace
 
-void bench_dem(bool only_settled) {
-  fmt::print("\nbodies that touch ({} threads; median of ten parts)\n", thread_count());
-  fmt::print("{:<34}{:>9}{:>10}{:>10}{:>9}{:>8}{:>8}{:>8}{:>8}{:>8}\n", "", "ms/step", "M p-s/s/c",
-             "contacts", "ns/cont.", "balls %", "solids", "motion", "lists", "steps/l.");
-  measure("10,000 spheres settled", spheres(10000, 2.1), 4000, 2000);
+void bench_dem(bool only_settled, const Note& tell) {
+  tell(fmt::format("\nbodies that touch ({} threads; median of ten parts)", thread_count()));
+  tell(fmt::format("{:<34}{:>9}{:>10}{:>10}{:>9}{:>8}{:>8}{:>8}{:>8}{:>8}", "", "ms/step", "M p-s/s/c",
+                   "contacts", "ns/cont.", "balls %", "solids", "motion", "lists", "steps/l."));
+  measure("10,000 spheres settled", spheres(10000, 2.1), 4000, 2000, tell);
   if (only_settled) return;
-  measure("10,000 spheres settling", spheres(10000, 2.1), 0, 4000);
-  measure("2,000 polyhedra on a belt", belt(2000), 800, 400);
+  measure("10,000 spheres settling", spheres(10000, 2.1), 0, 4000, tell);
+  measure("2,000 polyhedra on a belt", belt(2000), 800, 400, tell);
   for (const int count : {1000, 10000, 30000, 100000, 300000})
-    measure(fmt::format("{} spheres in contact", count).c_str(), spheres(count, 2.0), 200, 200);
-  fmt::print(
-      "M p-s/s/c: million particle-steps a second and core; steps/l.: steps between lists of neighbours\n");
+    measure(fmt::format("{} spheres in contact", count).c_str(), spheres(count, 2.0), 200, 200, tell);
+  tell("M p-s/s/c: million particle-steps a second and core; steps/l.: steps between lists of neighbours");
 }
 
 }  // namespace ejecta

@@ -1,4 +1,4 @@
-#include "app/bench_jet.hpp"
+#include "bench/bench_jet.hpp"
 
 #include <fmt/format.h>
 
@@ -61,7 +61,7 @@ constexpr int kTogether = 20;
 
 }  // namespace
 
-void bench_jet(int steps) {
+void bench_jet(int steps, const Note& tell) {
   JetModel jet(parse_case(kJetCase, "the standard jet"));
   Clock clock = jet.clock();
   for (int n = 0; n < 20 * kTogether; ++n) jet.step(clock);
@@ -73,11 +73,11 @@ void bench_jet(int steps) {
   }
   std::sort(seconds.begin(), seconds.end());
   const double cells = double(jet.grid().cells()), median = seconds[seconds.size() / 2];
-  fmt::print("jet: {} cells, axisymmetric, compressible, k-epsilon; {} threads\n", jet.grid().cells(),
-             thread_count());
-  fmt::print(
-      "median step {:.3f} ms (both stages): {:.1f} million cell-steps/s (fastest {:.1f}, slowest {:.1f})\n",
-      median * 1e3, cells / median * 1e-6, cells / seconds.front() * 1e-6, cells / seconds.back() * 1e-6);
+  tell(fmt::format("jet: {} cells, axisymmetric, compressible, k-epsilon; {} threads", jet.grid().cells(),
+                   thread_count()));
+  tell(fmt::format(
+      "median step {:.3f} ms (both stages): {:.1f} million cell-steps/s (fastest {:.1f}, slowest {:.1f})",
+      median * 1e3, cells / median * 1e-6, cells / seconds.front() * 1e-6, cells / seconds.back() * 1e-6));
 }
 
 }  // namespace ejecta

@@ -1,13 +1,13 @@
+#include "bench/bench.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
 
-#include "app/bench_dem.hpp"
-#include "app/bench_jet.hpp"
-#include "app/exit_code.hpp"
-#include "app/simulation.hpp"
 #include "base/parallel.hpp"
 #include "base/stopwatch.hpp"
+#include "bench/bench_dem.hpp"
+#include "bench/bench_jet.hpp"
 #include "case/load.hpp"
 #include "simulation/coupled_model.hpp"
 
@@ -94,11 +94,11 @@ double least_traffic(const std::string& name) {
 
 }  // namespace
 
-int bench(const BenchOptions& options) {
+void bench(const BenchOptions& options, const Note& tell) {
   if (options.threads > 0) set_thread_count(options.threads);
   if (!options.only.empty()) {
-    bench_dem(options.only == "settled");
-    return exit_done;
+    bench_dem(options.only == "settled", tell);
+    return;
   }
   const Case c = parse_case(kStandardCase, "the standard case");
   CoupledModel model(c);
@@ -120,25 +120,25 @@ int bench(const BenchOptions& options) {
   std::sort(seconds.begin(), seconds.end());
   const double median = seconds[seconds.size() / 2], cells = double(model.grid().cells());
   const double bandwidth = copy_bandwidth();
-  fmt::print("standard case: {} cells, k-epsilon, one 27-sphere body; {} threads, {} steps after 20\n",
-             model.grid().cells(), thread_count(), options.steps);
-  fmt::print("median step {:.2f} ms: {:.1f} million cell-steps/s (fastest {:.1f}, slowest {:.1f})\n",
-             median * 1e3, cells / median * 1e-6, cells / seconds.front() * 1e-6,
-             cells / seconds.back() * 1e-6);
-  fmt::print("memory copies {:.1f} GB/s\n\n{:<28}{:>10}{:>8}{:>16}\n", bandwidth * 1e-9, "operator",
-             "ms/step", "%", "% of the limit");
+  tell(fmt::format("standard case: {} cells, k-epsilon, one 27-sphere body; {} threads, {} steps after 20",
+                   model.grid().cells(), thread_count(), options.steps));
+  tell(fmt::format("median step {:.2f} ms: {:.1f} million cell-steps/s (fastest {:.1f}, slowest {:.1f})",
+                   median * 1e3, cells / median * 1e-6, cells / seconds.front() * 1e-6,
+                   cells / seconds.back() * 1e-6));
+  tell(fmt::format("memory copies {:.1f} GB/s\n\n{:<28}{:>10}{:>8}{:>16}", bandwidth * 1e-9, "operator",
+                   "ms/step", "%", "% of the limit"));
   for (std::size_t n = 0; n < after.size(); ++n) {
     const double mean = (after[n].seconds - before[n].seconds) / options.steps;
     const double limit = least_traffic(after[n].name) * cells * sizeof(Real) / bandwidth;
-    fmt::print("{:<28}{:>10.3f}{:>8.1f}{:>16}\n", after[n].name, mean * 1e3, 100.0 * mean / median,
-               limit > 0.0 ? fmt::format("{:.0f}", 100.0 * limit / std::max(mean, 1e-12)) : std::string());
+    tell(fmt::format(
+        "{:<28}{:>10.3f}{:>8.1f}{:>16}", after[n].name, mean * 1e3, 100.0 * mean / median,
+        limit > 0.0 ? fmt::format("{:.0f}", 100.0 * limit / std::max(mean, 1e-12)) : std::string()));
   }
-  fmt::print(
+  tell(
       "\nThe limit is the time memory needs to deliver every field of a pass once; above 100 % fields stayed "
-      "in cache.\n");
-  bench_jet(options.steps);
-  bench_dem(false);
-  return exit_done;
+      "in cache.");
+  bench_jet(options.steps, tell);
+  bench_dem(false, tell);
 }
 
 }  // namespace ejecta
