@@ -167,7 +167,12 @@ class CommandLine(unittest.TestCase):
 
     def test_every_shipped_case_passes_check(self):
         source = pathlib.Path(__file__).parents[2]
-        cases = [str(p) for folder in ("cases", "verification", "validation") for p in (source / folder).rglob("*.toml")]
+        cases = [
+            str(p)
+            for folder in ("cases", "verification", "validation")
+            for p in (source / folder).rglob("*.toml")
+            if p.parent.name != "setup"  # what cases extend need not be whole
+        ]
         self.assertGreater(len(cases), 20)
         answer = ejecta("check", *cases)
         self.assertEqual(answer.returncode, 0, answer.stderr)

@@ -40,7 +40,9 @@ std::vector<fs::path> shipped_cases() {
 }
 
 TEST(ShippedCases, AllLoad) {
-  for (const fs::path& path : shipped_cases()) EXPECT_NO_THROW(load_case(path.string())) << path;
+  for (const fs::path& path : shipped_cases())
+    if (path.parent_path().filename() != "setup")  // what cases extend need not be whole
+      EXPECT_NO_THROW(load_case(path.string())) << path;
 }
 
 TEST(ShippedCases, ExerciseEveryKey) {

@@ -15,6 +15,12 @@ using testing::HasSubstr;
 
 class Extends : public testing::Test {
  protected:
+  void SetUp() override {
+    for (const char* name : {"floor.stl", "jets/floor.stl", "shared/parts/floor.stl", "own/own.stl"})
+      write(name,
+            "solid floor\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\n"
+            "endfacet\nendsolid floor\n");
+  }
   std::string write(const std::string& name, const std::string& text) {
     const std::filesystem::path file = scratch.path() / name;
     std::filesystem::create_directories(file.parent_path());
