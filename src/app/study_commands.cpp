@@ -161,34 +161,40 @@ int map_case(const StudyOptions& o) {
   return exit_done;
 }
 
-int study_task(const std::string& directory, std::size_t task, int threads) {
+int study_tasks(const std::string& directory, const std::vector<std::size_t>& tasks, int threads) {
   const TaskStore store = TaskStore::open(directory);
-  if (task >= store.tasks().size())
-    throw InputError(fmt::format("{} has the tasks 0 to {}; there is no task {}", directory,
-                                 store.tasks().size() - 1, task));
+  for (const std::size_t task : tasks)
+    if (task >= store.tasks().size())
+      throw InputError(fmt::format("{} has the tasks 0 to {}; there is no task {}", directory,
+                                   store.tasks().size() - 1, task));
   std::optional<SignalWatch> signals;  // until the first step a signal ends the program at once
   const auto stop = [&] {
     if (!signals) signals.emplace();
     return signals->stop_requested();
   };
   const auto note = [](const std::string& line) { fmt::print(stderr, "{}\n", line); };
-  switch (perform_task(store, task, threads, run_for_study, stop, note)) {
-    case Performed::done:
-    case Performed::was_done:
-      return exit_done;
-    case Performed::runs_elsewhere:
-      fmt::print(stderr, "task {} of {} runs in another process\n", task, directory);
-      return exit_failure;
-    case Performed::stopped:
-      return exit_stopped;
-    case Performed::diverged:
-      fmt::print(stderr, "error: {}\n", store.failure(task));
-      return exit_diverged;
-    case Performed::refused:
-      break;
+  int code = exit_done;
+  for (const std::size_t task : tasks) {
+    switch (perform_task(store, task, threads, run_for_study, stop, note)) {
+      case Performed::done:
+      case Performed::was_done:
+        break;
+      case Performed::runs_elsewhere:
+        note(fmt::format("task {} of {} runs in another process", task, directory));
+        code = exit_failure;
+        break;
+      case Performed::stopped:
+        return exit_stopped;
+      case Performed::diverged:
+        note("error: " + store.failure(task));
+        code = exit_diverged;
+        break;
+      case Performed::refused:
+        note("error: " + store.failure(task));
+        code = exit_bad_input;
+    }
   }
-  fmt::print(stderr, "error: {}\n", store.failure(task));
-  return exit_bad_input;
+  return code;
 }
 
 int study_tell(const std::string& directory) {

@@ -28,7 +28,7 @@ int runs_side_by_side(const Case& c);
 // The commands. Each returns an ExitCode.
 int study_case(const StudyOptions& options);
 int map_case(const StudyOptions& options);
-int study_task(const std::string& directory, std::size_t task, int threads);
+int study_tasks(const std::string& directory, const std::vector<std::size_t>& tasks, int threads);
 int study_tell(const std::string& directory);
 int study_stop(const std::string& directory);
 int study_collect(const std::string& directory);

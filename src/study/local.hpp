@@ -7,7 +7,8 @@
 
 namespace ejecta {
 
-/// How a machine works on tasks: each in a process of its own, so that one that crashes takes nobody along.
+/// How a machine works on tasks: in processes of their own, so that one that crashes takes nobody along.
+/// Short ones share a process, and are run again alone if it crashes.
 struct LocalExecutor {
   std::filesystem::path program;  ///< `ejecta`
   int at_once = 1;                ///< processes side by side

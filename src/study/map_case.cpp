@@ -12,21 +12,31 @@
 namespace ejecta {
 namespace {
 
-/// Width of the smallest cells of an axis, m.
-double finest_cell(const AxisSpec& axis) {
-  double finest = 1e300;
-  for (std::size_t b = 0; b < axis.cells.size(); ++b)
-    for (const int i : {0, axis.cells[b] - 1})
-      finest = std::min(finest, cell_width(axis.points[b + 1] - axis.points[b], axis.cells[b],
-                                           axis.grading.empty() ? 1.0 : axis.grading[b], i));
+/// The block of an axis with the smallest cells: its ends and their width, m.
+struct FineBlock {
+  double low = 0.0, high = 0.0, cell = 1e300;
+};
+FineBlock fine_block(const AxisSpec& axis) {
+  FineBlock finest;
+  for (std::size_t b = 0; b < axis.cells.size(); ++b) {
+    const double length = axis.points[b + 1] - axis.points[b],
+                 grading = axis.grading.empty() ? 1.0 : axis.grading[b];
+    const double cell = std::max(cell_width(length, axis.cells[b], grading, 0),
+                                 cell_width(length, axis.cells[b], grading, axis.cells[b] - 1));
+    if (cell < finest.cell) finest = {axis.points[b], axis.points[b + 1], cell};
+  }
   return finest;
 }
 
-/// The box goes half of the way with the body, so that its fine cells hold both the jet and the body; by
-/// whole cells, so that the jet lies in its cells as before.
-void follow(AxisSpec& axis, double y) {
+/// The box goes half of the way with the body, so that its fine cells hold both the jet and the body, and
+/// further where they would not hold the body; by whole cells, so that the jet lies in its cells as before.
+void follow(AxisSpec& axis, double y, double half_width) {
   if (axis.points.size() < 2 || axis.cells.size() + 1 != axis.points.size()) return;
-  const double cell = finest_cell(axis), way = std::round(0.5 * y / cell) * cell;
+  const FineBlock fine = fine_block(axis);
+  double way = 0.5 * y;
+  if (y > 0.0) way = std::max(way, y + half_width - fine.high);
+  if (y < 0.0) way = std::min(way, y - half_width - fine.low);
+  way = std::round(way / fine.cell) * fine.cell;
   for (double& point : axis.points) point += way;
 }
 
@@ -38,7 +48,7 @@ Case map_run_case(const Case& base, const Proposal& at) {
   body.along = at.at.x - c.launch.offset_along;
   body.across = at.at.y - c.launch.offset_across;
   if (at.fidelity == Fidelity::coarse) refine(c.grid, base.map.coarse_refinement);
-  follow(c.grid.axis[1], at.at.y);
+  follow(c.grid.axis[1], at.at.y, half_extent(body).y());
   c.splitter.solid = false;  // the margin is that of the flight, without the plate's blow
   c.run.until = RunUntil::verdict;
   c.output.fields_interval = c.output.slices_interval = 0.0;

@@ -176,9 +176,9 @@ class Study(unittest.TestCase):
         self.assertEqual(self.result("full"), self.result("whole"))
 
     def test_refusals_come_before_the_first_run(self):
-        bad = self.case(more="[[study.vary]]\nkey = \"body.ball.diameter\"\nvalues = [\"10 mm\", \"0 mm\"]\n")
+        bad = self.case(more="[[study.vary]]\nkey = \"body.ball.diameter\"\nvalues = [\"10 mm\", \"-3 mm\"]\n")
         text = self.ejecta("study", bad, "--out", "s", code=2)
-        self.assertIn("\"0 mm\" is out of range", text)
+        self.assertIn("\"-3 mm\" is out of range", text)
         self.assertIn("^", text)
         self.assertFalse((self.folder / "s").exists())
         plain = self.folder / "plain.toml"

@@ -58,19 +58,18 @@ void add_study(CLI::App& app, Action& action) {
                     study_collect);
   struct Task {
     std::string directory;
-    std::size_t index = 0;
+    std::vector<std::size_t> indices;
     int threads = 1;
   };
   auto task = std::make_shared<Task>();
-  CLI::App* one =
-      command->add_subcommand("run-task", "Runs one task, unless it is done: what schedulers call");
+  CLI::App* one = command->add_subcommand("run-task", "Runs tasks that are not done: what schedulers call");
   one->add_option("DIR", task->directory, "Directory of the study or map")->required()->type_name("");
-  one->add_option("INDEX", task->index, "Number of the task, from 0")->required()->type_name("");
+  one->add_option("INDEX", task->indices, "Numbers of tasks, from 0")->required()->type_name("");
   one->add_option("--threads", task->threads, "Threads (default: 1)")
       ->type_name("N")
       ->check(CLI::Range(1, 1024).description(""));
   one->callback([task, &action] {
-    action = [task] { return study_task(task->directory, task->index, task->threads); };
+    action = [task] { return study_tasks(task->directory, task->indices, task->threads); };
   });
   command->footer(
       "A study that was stopped, or killed, goes on when the same command is given again.\n\n"
