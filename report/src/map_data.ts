@@ -50,6 +50,7 @@ export interface MapResult {
   runs_coarse: number;
   runs: MapRun[];
   contradictions: { x_m: number; y_m: number; clearance_m: number; fine: boolean; chance: number }[];
+  mirror_check?: { x_m: number; y_m: number; clearance_m: number; clearance_mirrored_m: number; contradicts: boolean };
   history: { runs: number; area_m2: number; area_error_m2: number }[];
   runs_wall_time_s: number;
   wall_time_s: number;

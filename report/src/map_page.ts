@@ -72,8 +72,12 @@ function paperRows(map: MapResult): HTMLElement | null {
 }
 
 function contradictions(map: MapResult): HTMLElement | null {
-  if (map.contradictions.length === 0) return null;
-  return h("ul", { class: "assumptions" }, ...map.contradictions.map((c) => h("li", {},
+  const mirror = map.mirror_check;
+  if (map.contradictions.length === 0 && !mirror) return null;
+  return h("ul", { class: "assumptions" }, mirror && h("li", {},
+    h("p", { class: "what" }, mirror.contradicts ? "The mirror image is not what the case claims." : "The claimed symmetry holds where it was tried."),
+    h("p", {}, `At x ${fixed(mirror.x_m * 1e3, 1)}, y \u00b1${fixed(mirror.y_m * 1e3, 1)} mm the clearances are ${fixed(mirror.clearance_m * 1e3, 1)} and ${fixed(mirror.clearance_mirrored_m * 1e3, 1)} mm.`)),
+  ...map.contradictions.map((c) => h("li", {},
     h("p", { class: "what" }, `The run at x ${fixed(c.x_m * 1e3, 1)}, y ${fixed(c.y_m * 1e3, 1)} mm contradicts the map.`),
     h("p", {}, `Its clearance is ${fixed(c.clearance_m * 1e3, 1)} mm; the others give its verdict a chance of ${(100 * c.chance).toPrecision(2)} %.`))));
 }

@@ -90,6 +90,7 @@ int study_case(const StudyOptions& o) {
     print_commands(store, tasks);
     return exit_done;
   }
+  const StudyDriver driver(store);
   store.ask_to_stop(false);
   const int at_once = o.at_once > 0 ? o.at_once : runs_side_by_side(setup.tasks.front().resolved);
   Teller teller(store, o.quiet);
@@ -124,6 +125,7 @@ int map_case(const StudyOptions& o) {
   TaskStore store = TaskStore::create(directory, study_header("map", base), o.force);
   if (o.retry)
     for (std::size_t task = 0; task < store.tasks().size(); ++task) store.forget_failure(task);
+  const StudyDriver driver(store);
   store.ask_to_stop(false);
   const int at_once = o.at_once > 0 ? o.at_once : runs_side_by_side(base);
   if (!o.quiet)

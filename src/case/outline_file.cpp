@@ -8,6 +8,7 @@ std::vector<std::array<double, 2>> read_outline_file(const std::string& file,
                                                      std::vector<Problem>& problems) {
   static const CsvForm form{.kind = "an outline",
                             .columns = {{"x", Dimension::length}, {"y", Dimension::length}},
+                            .ascends = false,
                             .by_name = false,
                             .example_head = "x [mm], y [mm]",
                             .example_row = "-12, 3.5"};

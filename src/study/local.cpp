@@ -155,29 +155,31 @@ class Pool {
 }  // namespace
 
 bool run_locally(const TaskStore& store, std::span<const std::size_t> tasks, const LocalExecutor& executor) {
+  std::vector<std::size_t> left, alone, elsewhere;
   const std::vector<TaskState> states = store.states();
-  std::vector<std::size_t> left;
-  for (const std::size_t task : tasks)
+  for (const std::size_t task : tasks) {
+    if (states[task] == TaskState::running) elsewhere.push_back(task);
     if (states[task] == TaskState::waiting || states[task] == TaskState::crashed) left.push_back(task);
+  }
   std::reverse(left.begin(), left.end());
   Pool pool(store, executor);
   bool stopped = false;
   auto pause = std::chrono::microseconds(200);
   const auto longest = std::chrono::microseconds(50'000);
-  std::vector<std::size_t> alone;
+  double looked = wall_seconds();
   const auto more = [&] { return !stopped && !(left.empty() && alone.empty()); };
-  while (pool.size() > 0 || more()) {
+  while (pool.size() > 0 || more() || (!stopped && !elsewhere.empty())) {
     while (more() && pool.size() < static_cast<std::size_t>(executor.at_once)) {
       // Towards the end every process gets some.
       const auto fair = left.size() / static_cast<std::size_t>(executor.at_once);
       const std::size_t count = alone.empty() ? std::clamp<std::size_t>(fair, 1, pool.share()) : 1;
-      std::vector<std::size_t> tasks;
+      std::vector<std::size_t> work;
       std::vector<std::size_t>& from = alone.empty() ? left : alone;
       for (std::size_t n = 0; n < count; ++n) {
-        tasks.push_back(from.back());
+        work.push_back(from.back());
         from.pop_back();
       }
-      pool.start(tasks);
+      pool.start(work);
     }
     if (pool.reap(false)) {
       pause = std::chrono::microseconds(200);
@@ -185,6 +187,15 @@ bool run_locally(const TaskStore& store, std::span<const std::size_t> tasks, con
       if (executor.look) executor.look();
       if (!pool.broken().empty()) throw Error(pool.broken());
       continue;
+    }
+    // What another process had is ours if it ends without a result.
+    if (wall_seconds() - looked > 1.0) {
+      looked = wall_seconds();
+      std::erase_if(elsewhere, [&](std::size_t task) {
+        const TaskState state = store.state(task);
+        if (state == TaskState::waiting) alone.push_back(task);
+        return state != TaskState::running;
+      });
     }
     if (!stopped && ((executor.stop && executor.stop()) || store.is_asked_to_stop())) {
       stopped = true;

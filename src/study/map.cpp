@@ -5,11 +5,16 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <filesystem>
+#include <optional>
 #include <set>
+#include <utility>
 
 #include "base/error.hpp"
 #include "base/stopwatch.hpp"
 #include "case/problem.hpp"
+#include "case/symmetry.hpp"
+#include "output/output_file.hpp"
 #include "study/map_case.hpp"
 #include "study/map_result.hpp"
 #include "study/outline.hpp"
@@ -42,6 +47,7 @@ class MapMaker {
   MapEnd make() {
     refuse_what_cannot_run();
     start_ = wall_seconds();
+    spent_before_ = time_spent();
     for (;;) {
       const std::vector<Proposal> asked = finder_.ask(base_.map.runs_at_once);
       if (asked.empty()) return conclude(MapEnd::runs_used_up);
@@ -61,6 +67,15 @@ class MapMaker {
   }
 
  private:
+  /// By earlier calls on the same map, s.
+  double time_spent() const {
+    std::error_code none;
+    const std::filesystem::path path = store_.path() / "result.json";
+    if (!std::filesystem::exists(path, none)) return 0.0;
+    const Json r = Json::parse(output::read_file(path), nullptr, false);
+    return r.is_object() ? r.value("wall_time_s", 0.0) : 0.0;
+  }
+
   Json labels_of(const Proposal& p) const {
     return {{"x_m", p.at.x},
             {"y_m", p.at.y},
@@ -113,6 +128,23 @@ class MapMaker {
     runs_.push_back(std::move(run));
   }
 
+  /// Of a symmetry that the case claims and does not show: the run nearest to the edge once more, on the
+  /// other side. Nothing where it was stopped.
+  std::optional<MirrorCheck> check_mirror() {
+    const MapPoint* nearest = nullptr;
+    const auto rank = [](const MapPoint& r) {  // coarse ones cost less
+      return std::pair(r.fidelity == Fidelity::fine, std::abs(r.flight->clearance()));
+    };
+    for (const MapPoint& run : runs_)
+      if (run.flight && run.at.y > 0.0 && (!nearest || rank(run) < rank(*nearest))) nearest = &run;
+    if (!nearest) return std::nullopt;
+    const Proposal mirror{{nearest->at.x, -nearest->at.y}, nearest->fidelity};
+    const std::vector<std::size_t> task = store_.add({{map_run_case(base_, mirror), labels_of(mirror)}});
+    if (!workers_.run(store_, task) || store_.state(task.front()) != TaskState::done) return std::nullopt;
+    const MapFlight flight = map_flight(base_, store_.result(task.front()).at("result"));
+    return MirrorCheck{nearest->at, nearest->flight->clearance(), flight.clearance()};
+  }
+
   /// The same runs against a plate that stands elsewhere.
   Outline outline_for(const PlatePlace& plate) const {
     OutlineFinder other(settings_);
@@ -127,6 +159,7 @@ class MapMaker {
     for (const PlatePlace& plate :
          {PlatePlace{-dx, 0.0}, PlatePlace{dx, 0.0}, PlatePlace{0.0, -dz}, PlatePlace{0.0, dz}})
       if (plate.x != 0.0 || plate.z != 0.0) plates.push_back({plate, outline_for(plate)});
+    if (settings_.symmetric && !symmetry_across(base_, mapped_body(base_)).sure) mirror_ = check_mirror();
     show(finder_.outline(), plates, end == MapEnd::finished ? "finished" : "runs used up");
     return end;
   }
@@ -141,7 +174,8 @@ class MapMaker {
                                     .runs = runs_,
                                     .history = history_,
                                     .contradictions = finder_.contradictions(),
-                                    .wall_time = wall_seconds() - start_});
+                                    .mirror = mirror_,
+                                    .wall_time = spent_before_ + wall_seconds() - start_});
     store_.write_json("result.json", result);
     if (workers_.show) workers_.show(result);
   }
@@ -153,7 +187,8 @@ class MapMaker {
   OutlineFinder finder_;
   std::vector<MapPoint> runs_;
   std::vector<MapHistory> history_;
-  double start_ = 0.0;
+  std::optional<MirrorCheck> mirror_;
+  double start_ = 0.0, spent_before_ = 0.0;  // s
 };
 
 }  // namespace

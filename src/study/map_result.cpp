@@ -143,6 +143,12 @@ Json map_result(const MapSummary& m) {
                                    {"clearance_m", c.run.margin},
                                    {"fine", c.run.fidelity == Fidelity::fine},
                                    {"chance", c.chance}});
+  if (m.mirror)
+    r["mirror_check"] = {{"x_m", m.mirror->at.x},
+                         {"y_m", m.mirror->at.y},
+                         {"clearance_m", m.mirror->clearance},
+                         {"clearance_mirrored_m", m.mirror->mirrored},
+                         {"contradicts", m.mirror->contradicts()}};
   r["history"] = Json::array();
   for (const MapHistory& h : m.history)
     r["history"].push_back({{"runs", h.runs}, {"area_m2", h.area.value}, {"area_error_m2", h.area.error}});
@@ -168,6 +174,8 @@ std::string map_sentence(const Json& r) {
                      : fmt::format(" ({} runs)", fine);
   if (const std::size_t n = r["contradictions"].size(); n > 0)
     text += fmt::format("; {} run{} contradict{} it", n, n == 1 ? "" : "s", n == 1 ? "s" : "");
+  if (r.contains("mirror_check") && r["mirror_check"]["contradicts"])
+    text += "; its mirror image is not what the case claims";
   return text + ".";
 }
 

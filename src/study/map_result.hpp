@@ -36,6 +36,13 @@ struct MapHistory {
   Estimate area;
 };
 
+/// A run and its mirror image, which was run too.
+struct MirrorCheck {
+  Point2 at;
+  double clearance = 0.0, mirrored = 0.0;  ///< m
+  bool contradicts() const { return (clearance > 0.0) != (mirrored > 0.0); }
+};
+
 struct MapSummary {
   const Case& base;
   const MapSettings& settings;
@@ -45,6 +52,7 @@ struct MapSummary {
   const std::vector<MapPoint>& runs;
   const std::vector<MapHistory>& history;
   std::vector<Contradiction> contradictions;
+  std::optional<MirrorCheck> mirror;
   double wall_time = 0.0;  ///< s
 };
 

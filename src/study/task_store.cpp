@@ -31,7 +31,8 @@ using Json = nlohmann::ordered_json;
 /// Of the hash, in the names of files: 80 bits.
 constexpr std::size_t kHashDigits = 20;
 constexpr std::array kFolders{"cases", "results", "failed", "running", "runs", "logs", "slurm"};
-constexpr std::array kFiles{"tasks.jsonl", "result.json", "runs.csv", "report.html", "stop", "study.json"};
+constexpr std::array kFiles{"tasks.jsonl", "result.json", "runs.csv",  "report.html",
+                            "stop",        "driver",      "study.json"};
 
 std::string json_text(const Json& json, int indent = -1) {
   return json.dump(indent, ' ', false, Json::error_handler_t::replace);
@@ -114,6 +115,9 @@ TaskStore TaskStore::create(const fs::path& directory, const Json& header, bool 
                       "or start anew there with --force",
                       directory.string(), there.value("kind", "study"), there.value("title", ""),
                       there.value("case", "")));
+    if (force && is_locked(directory / "driver"))
+      throw InputError(fmt::format("another process works on {}; stop it first:  ejecta study stop {}",
+                                   directory.string(), directory.string()));
     if (force) {
       for (const char* name : kFolders) fs::remove_all(directory / name, failed);
       for (const char* name : kFiles) fs::remove(directory / name, failed);
@@ -295,6 +299,21 @@ std::vector<double> TaskStore::latest_results(std::size_t count) const {
   if (times.size() > count) times.erase(times.begin(), times.end() - static_cast<std::ptrdiff_t>(count));
   return times;
 }
+
+StudyDriver::StudyDriver(const TaskStore& store) {
+  const fs::path file = store.path() / "driver";
+  descriptor_ = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
+  if (descriptor_ < 0) output::throw_system_error("cannot create", file);
+  if (::flock(descriptor_, LOCK_EX | LOCK_NB) == 0) return;
+  ::close(descriptor_);
+  const std::string path = store.path().string();
+  throw InputError(
+      fmt::format("another process works on {}\n  how far it is:  ejecta study status {}\n  stop it:        "
+                  "ejecta study stop {}",
+                  path, path, path));
+}
+
+StudyDriver::~StudyDriver() { ::close(descriptor_); }
 
 TaskClaim::TaskClaim(const TaskStore& store, std::size_t task) : file_(store.file(task, "running", ".json")) {
   descriptor_ = ::open(file_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);

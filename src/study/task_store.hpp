@@ -89,6 +89,19 @@ class TaskStore {
   mutable std::map<std::string, std::string> digests_;  // of files that cases read
 };
 
+/// The right to decide what is run next, which dies with the process: one driver a study.
+class StudyDriver {
+ public:
+  /// Throws InputError where another process has it.
+  explicit StudyDriver(const TaskStore& store);
+  ~StudyDriver();
+  StudyDriver(const StudyDriver&) = delete;
+  StudyDriver& operator=(const StudyDriver&) = delete;
+
+ private:
+  int descriptor_ = -1;
+};
+
 /// The right to work on a task, which dies with the process; and its sign of life.
 class TaskClaim {
  public:

@@ -175,6 +175,24 @@ TEST_F(Maps, TwoFidelitiesWorkTogether) {
   EXPECT_LE(r["runs_fine"], 15);
 }
 
+TEST_F(Maps, AClaimedSymmetryIsChecked) {
+  const RunFunction aslant = [](const Case& c, const RunRequest& r) {
+    RunAnswer a = flown(c, r);
+    Json& z = a.quantities["bodies"][0]["final_position_m"][2];
+    if (c.bodies[0].across < 0.0) z = z.get<double>() - 0.02;
+    return a;
+  };
+  std::string text = kCase;
+  text += "symmetric = true\n[[wall]]\npoint = [\"0 m\", \"0 m\", \"-1 m\"]\n";  // a wall: nobody can be sure
+  map(read(text), "claimed", 1000, flown);
+  EXPECT_FALSE(result("claimed")["mirror_check"]["contradicts"].get<bool>());
+  EXPECT_FALSE(result("claimed")["mirror_check"].empty());
+  map(read(text, {"run.title=\"aslant\""}), "aslant", 1000, aslant);
+  EXPECT_NEAR(result("aslant")["mirror_check"]["clearance_mirrored_m"],
+              result("aslant")["mirror_check"]["clearance_m"].get<double>() - 0.02, 1e-9);
+  EXPECT_THAT(result("aslant")["summary"].get<std::string>(), HasSubstr("mirror image"));
+}
+
 TEST_F(Maps, ARunThatFailsIsNamedAndTheRestGoesOn) {
   int n = 0;
   const RunFunction failing = [&](const Case& c, const RunRequest& r) {

@@ -186,6 +186,15 @@ TEST_F(Studies, ATaskIsRunOnce) {
   EXPECT_EQ(s.state(0), TaskState::done);
 }
 
+TEST_F(Studies, OneProcessDecidesWhatIsRunNext) {
+  const TaskStore s = store(kGrid);
+  {
+    const StudyDriver one(s);
+    EXPECT_THROW(StudyDriver two(s), InputError);
+  }
+  EXPECT_NO_THROW(StudyDriver three(s));
+}
+
 TEST_F(Studies, ATaskThatWasStoppedWaits) {
   const TaskStore s = store(kGrid);
   const RunFunction stopped = [](const Case&, const RunRequest&) { return RunAnswer{.stopped = true}; };
