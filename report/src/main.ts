@@ -4,11 +4,14 @@ import { readRuns, type JsonObject, type Run } from "./data";
 import { h, section } from "./dom";
 import { figureCharts, pictureViews } from "./figures";
 import { fixed, unbroken } from "./format";
+import { readMap } from "./map_data";
+import { mapPage } from "./map_page";
 import { motionCharts, seriesCharts } from "./motion_charts";
 import { pathNote, pathView } from "./path";
 import { Player } from "./player";
 import { profileCharts } from "./profile_charts";
 import { replayView } from "./replay_view";
+import { readStudy, studyPage } from "./study_page";
 import {
   assumptionList, bodyCards, costTable, expectationTable, ledgerTable, operatorTable, provenanceTable, resultTable,
 } from "./tables";
@@ -141,9 +144,18 @@ function page(runs: Run[]): HTMLElement {
     h("footer", {}, `Ejecta ${String(runs[0]?.manifest?.["version"] ?? "")} \u00b7 one file, works offline`));
 }
 
-readRuns().then((runs) => {
-  document.title = `${titleOf(runs)} \u2013 Ejecta report`;
-  document.getElementById("app")!.replaceChildren(page(runs));
+async function content(): Promise<[title: string, page: HTMLElement]> {
+  const map = readMap();
+  if (map) return [map.title, mapPage(map)];
+  const study = readStudy();
+  if (study) return [study.title, studyPage(study)];
+  const runs = await readRuns();
+  return [titleOf(runs), page(runs)];
+}
+
+content().then(([title, shown]) => {
+  document.title = `${title} \u2013 Ejecta report`;
+  document.getElementById("app")!.replaceChildren(shown);
   followTheme();
   document.documentElement.dataset["ready"] = "true";
 }).catch((error: unknown) => {

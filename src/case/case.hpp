@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/vec.hpp"
+#include "case/node.hpp"
 
 /// What the user wrote, as plain structs in SI units. No behaviour. The schema (case/schema.cpp) is the only
 /// place that knows the keys of the TOML file; everybody else reads these structs.
@@ -36,6 +37,7 @@ enum class Motion { free, fixed, prescribed };
 enum class ContactLaw { hertz_mindlin, linear };
 enum class WallKind { plane, plate, box, belt, mesh };
 enum class RunUntil { time, verdict, rest };
+enum class StudyDesign { grid, list, latin_hypercube, sobol };
 
 /// [run]
 struct RunSpec {
@@ -352,6 +354,42 @@ struct DomainSpec {
   std::vector<std::string> periodic;  ///< "x", "y", "z"
 };
 
+/// [[study.vary]]: a key that a study varies. Values as they were written: they are read as those of the key.
+struct VarySpec {
+  std::string key;               ///< e.g. "valve.supply_pressure", "body.0.size"
+  std::vector<Node> values;      ///< or
+  std::optional<Node> from, to;  ///< a range
+  int steps = 0;                 ///< of a range in a grid or a list: values with both ends
+};
+
+/// [study]: many runs of a case that differ in some keys
+struct StudySpec {
+  bool enabled = false;
+  StudyDesign design = StudyDesign::grid;
+  int samples = 0;                      ///< of a Latin hypercube or a Sobol sequence
+  std::int64_t seed = 1;                ///< of these
+  std::vector<std::string> quantities;  ///< JSON pointers into result.json
+  bool keep_runs = true;                ///< each run directory with its report; else only the numbers
+  std::vector<VarySpec> vary;
+};
+
+/// [map]: the places around the jet from which a body is ejected
+struct MapSpec {
+  bool enabled = false;
+  std::string body;                    ///< empty: the first on the belt
+  std::array<double, 2> along{0, 0};   ///< m, window: where the body is at launch.arrives_at, +x
+  std::array<double, 2> across{0, 0};  ///< m, the same across the belt, +y
+  std::optional<bool> symmetric;       ///< about y of the jet; unset: where the case is
+  double coarse_refinement = 0.5;      ///< grid.refinement of the coarse runs over that of the fine; 1: none
+  int max_runs = 35;                   ///< of both
+  int max_fine_runs = 15;              ///< where there are coarse runs
+  int runs_at_once = 4;                ///< asked for together
+  double area_error = 0.02;            ///< of the area: the map is finished
+  std::array<double, 2> plate_error{0, 0};  ///< m, along x and z: the edge lies within this
+  std::int64_t seed = 1;                    ///< of the draws behind the errors
+  std::string measured;                     ///< CSV of a measured outline
+};
+
 struct Case {
   std::string path;                ///< of the file it came from; relative names inside are relative to it
   std::vector<std::string> bases;  ///< paths of the files that it extends
@@ -383,6 +421,8 @@ struct Case {
   ExactSpec exact;
   std::vector<ExpectSpec> expects;
   ConvergenceSpec convergence;
+  StudySpec study;
+  MapSpec map;
 };
 
 }  // namespace ejecta

@@ -191,7 +191,8 @@ class CsvReader {
         return fail(cells[n], fmt::format("\"{}\" is no number", cells[n].text), "a number",
                     form_.example_row);
       values[columns_[n].which] = *value * columns_[n].factor;
-      if (columns_[n].which == 0 && !table_.rows.empty() && !(values[0] > table_.rows.back()[0]))
+      if (form_.ascends && columns_[n].which == 0 && !table_.rows.empty() &&
+          !(values[0] > table_.rows.back()[0]))
         return fail(cells[n], fmt::format("the column {} does not increase", form_.columns[0].name),
                     "a number above that of the row before", form_.example_row);
     }

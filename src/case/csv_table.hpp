@@ -17,7 +17,8 @@ struct CsvColumn {
 /// What a table must look like.
 struct CsvForm {
   std::string kind;                ///< e.g. "a path"
-  std::vector<CsvColumn> columns;  ///< the first is required and ascends
+  std::vector<CsvColumn> columns;  ///< the first is required
+  bool ascends = true;             ///< the first goes up from row to row
   bool by_name = true;             ///< else all of them in this order, whatever they are called
   bool may_lack_head = false;      ///< numbers from the first line on are in SI units
   std::string example_head, example_row;

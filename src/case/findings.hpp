@@ -37,5 +37,6 @@ void sense_sorter(const Case&, Findings&);
 void sense_records(const Case&, Findings&);
 void sense_idle(const Case&, Findings&);
 void sense_expectations(const Case&, Findings&);
+void sense_map(const Case&, Findings&);
 
 }  // namespace ejecta

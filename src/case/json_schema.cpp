@@ -52,6 +52,8 @@ struct TypeOf {
   Json operator()(const std::optional<std::array<Vec3, 2>>*) const {
     return list_of(list_of(number(), 3), 2);
   }
+  Json operator()(const std::vector<Node>*) const { return {{"type", "array"}}; }
+  Json operator()(const std::optional<Node>*) const { return Json::object(); }
   Json operator()(const Formula&) const { return formula(); }
   Json operator()(const Formulas&) const { return list_of(formula(), 3); }
   Json operator()(const VectorOrFormulas&) const { return list_of(formula(), 3); }

@@ -37,6 +37,23 @@ std::string formula_text(const std::string& text, Dimension d) {
   return number ? scalar(*number, d) : quoted("= " + text);
 }
 
+/// As it was written, on one line.
+std::string written(const Node& node) {
+  struct Text {
+    const Node& node;
+    std::string operator()(Node::Table) const { return "{}"; }
+    std::string operator()(Node::List) const { return bracketed(node.children, written); }
+    std::string operator()(bool b) const { return b ? "true" : "false"; }
+    std::string operator()(std::int64_t i) const { return fmt::format("{}", i); }
+    std::string operator()(double d) const {
+      const std::string text = fmt::format("{}", d);
+      return text.find_first_of(".en") == std::string::npos ? fmt::format("{}.0", text) : text;
+    }
+    std::string operator()(const std::string& s) const { return quoted(s); }
+  };
+  return std::visit(Text{node}, node.value);
+}
+
 /// Writes the value of each kind of slot.
 struct ValueText {
   Dimension d;
@@ -67,6 +84,10 @@ struct ValueText {
   std::string operator()(const std::optional<std::array<Vec3, 2>>* v) const {
     return *v ? bracketed(**v, [&](const Vec3& p) { return (*this)(&p); }) : "";
   }
+  std::string operator()(const std::vector<Node>* v) const {
+    return v->empty() ? "" : bracketed(*v, written);
+  }
+  std::string operator()(const std::optional<Node>* v) const { return *v ? written(**v) : ""; }
   std::string operator()(const Choice& c) const { return quoted(c.words->at(c.get()).name); }
   std::string operator()(const Formula& f) const {
     if (f.text) return formula_text(*f.text, d);
@@ -135,6 +156,8 @@ struct TypeWords {
   std::string operator()(const std::optional<std::array<Vec3, 2>>*) const {
     return "a list of 2 lists of 3 " + many();
   }
+  std::string operator()(const std::vector<Node>*) const { return "a list of values of that key"; }
+  std::string operator()(const std::optional<Node>*) const { return "a value of that key"; }
   std::string operator()(const Choice& c) const {
     std::vector<std::string> names;
     for (const Word& w : *c.words) names.push_back(quoted(w.name));

@@ -10,6 +10,7 @@
 
 #include "base/units.hpp"
 #include "base/vec.hpp"
+#include "case/node.hpp"
 #include "case/words.hpp"
 
 namespace ejecta {
@@ -55,7 +56,7 @@ using Slot =
                  std::string*, Vec3*, std::vector<double>*, std::vector<int>*, std::vector<std::string>*,
                  std::array<int, 3>*, std::array<double, 2>*, std::optional<std::array<double, 2>>*,
                  std::vector<std::array<double, 4>>*, std::vector<Vec3>*, std::optional<std::array<Vec3, 2>>*,
-                 Choice, Formula, Formulas, VectorOrFormulas>;
+                 std::vector<Node>*, std::optional<Node>*, Choice, Formula, Formulas, VectorOrFormulas>;
 
 /// One entry of the schema, bound to one struct. Everything that is known of a key is here, and only here.
 struct Key {

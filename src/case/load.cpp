@@ -56,16 +56,13 @@ void fill_in(Case& c) {
 
 }  // namespace
 
-Case parse_case(const std::string& text, const std::string& name, const std::vector<std::string>& overrides,
-                std::vector<Problem>* warnings, const FurtherChecks& further) {
-  check_text(text, name);
-  std::vector<Problem> problems;
+namespace {
+
+/// Reads the case out of its tree; `problems` gets what is wrong.
+Case resolve(const Node& root, const std::string& name, bool syntax_errors, std::vector<Problem>& problems,
+             std::vector<Problem>* warnings, const FurtherChecks& further) {
   Case c;
   c.path = name;
-  Node root = parse_extended(std::make_shared<Source>(Source{name, text}), problems, c.bases);
-  // Keys may be missing only because their line could not be read: say what is wrong with the rest, not that.
-  const bool syntax_errors = !problems.empty();
-  for (const std::string& assignment : overrides) apply_override(root, assignment, problems);
   read_case(root, c, problems);
   if (syntax_errors) std::erase_if(problems, [](const Problem& p) { return p.what == "missing"; });
 
@@ -80,8 +77,40 @@ Case parse_case(const std::string& text, const std::string& name, const std::vec
   if (!syntax_errors && std::none_of(problems.begin(), problems.end(), concerns_a_section))
     add(check_sense(c, sections_of(problems)));
   if (problems.empty() && further) add(further(c));
-  throw_if_any(problems);
   return c;
+}
+
+}  // namespace
+
+Case parse_case(const std::string& text, const std::string& name, const std::vector<std::string>& overrides,
+                std::vector<Problem>* warnings, const FurtherChecks& further) {
+  check_text(text, name);
+  std::vector<Problem> problems;
+  std::vector<std::string> bases;
+  Node root = parse_extended(std::make_shared<Source>(Source{name, text}), problems, bases);
+  // Keys may be missing only because their line could not be read: say what is wrong with the rest, not that.
+  const bool syntax_errors = !problems.empty();
+  for (const std::string& assignment : overrides) apply_override(root, assignment, problems);
+  Case c = resolve(root, name, syntax_errors, problems, warnings, further);
+  throw_if_any(problems);
+  c.bases = std::move(bases);
+  return c;
+}
+
+Node case_tree(const std::string& path, const std::vector<std::string>& overrides) {
+  const std::string text = read_case_text(path);
+  check_text(text, path);
+  std::vector<Problem> problems;
+  std::vector<std::string> bases;
+  Node root = parse_extended(std::make_shared<Source>(Source{path, text}), problems, bases);
+  for (const std::string& assignment : overrides) apply_override(root, assignment, problems);
+  throw_if_any(problems);
+  return root;
+}
+
+Case resolve_case(const Node& root, const std::string& name, std::vector<Problem>& problems,
+                  const FurtherChecks& further) {
+  return resolve(root, name, false, problems, nullptr, further);
 }
 
 std::string folder_of(const Case& c) { return std::filesystem::path(c.path).parent_path().string(); }
@@ -104,6 +133,7 @@ void for_each_file(C& c, const Visit& visit) {
   }
   for (auto& w : c.walls) visit(w.file);
   for (auto& m : c.measured) visit(m.file);
+  visit(c.map.measured);
 }
 
 }  // namespace

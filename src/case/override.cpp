@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <utility>
+
 #include "case/node_path.hpp"
 #include "case/toml.hpp"
 
@@ -32,36 +34,43 @@ void apply_override(Node& root, const std::string& assignment, std::vector<Probl
   };
   if (equals == std::string::npos || equals == 0) return wrong("no key=value");
   const std::string path = assignment.substr(0, equals), value = assignment.substr(equals + 1);
-  std::vector<std::string> parts = split_path(path);
-  const std::string key = parts.back();
-  parts.pop_back();
+  const std::string key = split_path(path).back();
 
   const Node parsed = parse_value(key, value, "--set " + assignment);
   if (parsed.children.empty()) return wrong("the value cannot be read");
+  if (const std::string refusal = put_value(root, path, parsed.children.front()); !refusal.empty())
+    wrong(refusal);
+}
 
+std::string put_value(Node& root, const std::string& path, Node value) {
+  std::vector<std::string> parts = split_path(path);
+  const std::string key = parts.back();
+  parts.pop_back();
   Node* node = &root;
   for (const std::string& part : parts) {
     if (node->is_list()) {
       Node* next = const_cast<Node*>(element(*node, part));
-      if (!next) return wrong(fmt::format("no element \"{}\" in the list", part));
+      if (!next) return fmt::format("no element \"{}\" in the list", part);
       node = next;
       continue;
     }
-    if (!node->is_table()) return wrong(fmt::format("\"{}\" is inside a value", part));
+    if (!node->is_table()) return fmt::format("\"{}\" is inside a value", part);
     if (Node* next = node->find(part)) {
       node = next;
     } else {
       Node table;
       table.key = part;
-      table.place = parsed.children.front().place;
+      table.place = value.place;
       node->children.push_back(table);
       node = &node->children.back();
     }
   }
-  if (node->is_list()) return wrong("this is a list: say which element, e.g. body.0.mass");
-  if (!node->is_table()) return wrong(fmt::format("\"{}\" is inside a value", key));
-  if (Node* old = node->find(key)) *old = parsed.children.front();
-  else node->children.push_back(parsed.children.front());
+  if (node->is_list()) return "this is a list: say which element, e.g. body.0.mass";
+  if (!node->is_table()) return fmt::format("\"{}\" is inside a value", key);
+  value.key = key;
+  if (Node* old = node->find(key)) *old = std::move(value);
+  else node->children.push_back(std::move(value));
+  return "";
 }
 
 }  // namespace ejecta

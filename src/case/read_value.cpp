@@ -42,6 +42,16 @@ class ValueReader {
   bool operator()(std::optional<std::array<Vec3, 2>>* out) {
     return fixed(root_, out->emplace(), &ValueReader::vector);
   }
+  /// Values of another key, which is not known yet: read when the study is set up.
+  bool operator()(std::vector<Node>* out) {
+    if (!root_.is_list()) return fail(root_, kind_words(root_) + " instead of a list of values");
+    *out = root_.children;
+    return true;
+  }
+  bool operator()(std::optional<Node>* out) {
+    *out = root_;
+    return true;
+  }
   bool operator()(const Formula& f) { return formula(root_, f.text ? *f.text : f.optional->emplace()); }
   bool operator()(const Formulas& f) {
     return fixed(root_, f.text ? *f.text : f.optional->emplace(), &ValueReader::formula);

@@ -73,7 +73,11 @@ std::vector<Section> sections(Case& c) {
            table("checkpoint", "When the state is saved for --resume", c.checkpoint),
            exact,
            list("expect", "What `ejecta validate` compares with result.json", c.expects),
-           table("convergence", "Repetition on finer grids", c.convergence)})
+           table("convergence", "Repetition on finer grids", c.convergence),
+           table("study", "Many runs that differ in some keys: `ejecta study`", c.study, &c.study.enabled),
+           list("study.vary", "A key that the study varies", c.study.vary),
+           table("map", "The places around the jet from which a body is ejected: `ejecta map`", c.map,
+                 &c.map.enabled)})
     all.push_back(std::move(s));
   return all;
 }

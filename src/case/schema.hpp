@@ -45,5 +45,8 @@ std::vector<Key> keys(CheckpointSpec&);
 std::vector<Key> keys(ExactSpec&, Dimension pressure);
 std::vector<Key> keys(ExpectSpec&);
 std::vector<Key> keys(ConvergenceSpec&);
+std::vector<Key> keys(StudySpec&);
+std::vector<Key> keys(VarySpec&);
+std::vector<Key> keys(MapSpec&);
 
 }  // namespace ejecta

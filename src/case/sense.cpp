@@ -13,7 +13,7 @@ struct Part {
   std::vector<std::string> sections;  ///< what it reads
 };
 
-const std::array<Part, 14> parts{{
+const std::array<Part, 15> parts{{
     {sense_run, {"run", "environment", "fluid", "flow", "body", "splitter"}},
     {sense_grid, {"grid"}},
     {sense_boundaries, {"boundary", "environment", "flow", "grid"}},
@@ -28,6 +28,8 @@ const std::array<Part, 14> parts{{
     {sense_expectations, {"expect", "convergence", "exact", "flow"}},
     {sense_overlaps, {"body", "launch"}},
     {sense_records, {"grid", "flow", "probe", "line", "slice"}},
+    {sense_map,
+     {"map", "launch", "splitter", "body", "grid", "boundary", "jet", "valve", "environment", "flow"}},
     {sense_idle, {"boundary", "valve", "contact", "body", "wall", "splitter"}},
 }};
 

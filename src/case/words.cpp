@@ -106,4 +106,13 @@ const std::vector<Word>& words(RunUntil) {
   return list;
 }
 
+const std::vector<Word>& words(StudyDesign) {
+  static const std::vector<Word> list{
+      {"grid", "every value of each key with every value of the others"},
+      {"list", "the first values of all keys together, then the second, ..."},
+      {"latin-hypercube", "random, each key spread evenly over its range (McKay et al. 1979)"},
+      {"sobol", "a sequence that fills all ranges evenly (Joe & Kuo 2008)"}};
+  return list;
+}
+
 }  // namespace ejecta

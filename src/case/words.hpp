@@ -23,6 +23,7 @@ const std::vector<Word>& words(Motion);
 const std::vector<Word>& words(ContactLaw);
 const std::vector<Word>& words(WallKind);
 const std::vector<Word>& words(RunUntil);
+const std::vector<Word>& words(StudyDesign);
 
 /// The word of an enumerator, e.g. "k-omega-sst".
 template <class E>

@@ -102,20 +102,19 @@ std::string run_json(const fs::path& directory) {
 
 }  // namespace
 
-std::string report_json(std::span<const fs::path> runs) {
-  std::string text = fmt::format("{{\"format\":1,\"version\":\"{}\",\"runs\":[", version());
-  for (std::size_t n = 0; n < runs.size(); ++n) text.append(n ? "," : "").append(run_json(runs[n]));
-  text += "]}";
+namespace {
+
+/// So that it can stand inside a script element.
+std::string in_script(const std::string& json) {
   std::string safe;
-  safe.reserve(text.size());
-  for (const char c : text)
+  safe.reserve(json.size());
+  for (const char c : json)
     if (c == '<') safe += "\\u003c";
     else safe += c;
   return safe;
 }
 
-void write_report(std::span<const fs::path> runs, const fs::path& out) {
-  const std::string json = report_json(runs);
+void write_page(const std::string& json, const fs::path& out) {
   const std::string_view page = report_page();
   const std::size_t at = page.find(kPlaceholder);
   OutputFile file(out);
@@ -127,6 +126,22 @@ void write_report(std::span<const fs::path> runs, const fs::path& out) {
     file.write(page.substr(at + kPlaceholder.size()));
   }
   file.commit();
+}
+
+}  // namespace
+
+std::string report_json(std::span<const fs::path> runs) {
+  std::string text = fmt::format("{{\"format\":1,\"version\":\"{}\",\"runs\":[", version());
+  for (std::size_t n = 0; n < runs.size(); ++n) text.append(n ? "," : "").append(run_json(runs[n]));
+  return in_script(text + "]}");
+}
+
+void write_report(std::span<const fs::path> runs, const fs::path& out) { write_page(report_json(runs), out); }
+
+void write_study_report(const std::string& kind, const ordered_json& result, const fs::path& out) {
+  const ordered_json data{
+      {"format", 1}, {"version", version()}, {"runs", ordered_json::array()}, {kind, result}};
+  write_page(in_script(data.dump(-1, ' ', false, ordered_json::error_handler_t::replace)), out);
 }
 
 void write_report(const fs::path& run) { write_report(std::span(&run, 1), run / "report.html"); }

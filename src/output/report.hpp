@@ -1,5 +1,6 @@
 #pragma once
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <span>
 #include <string>
 #include <string_view>
@@ -14,6 +15,10 @@ void write_report(std::span<const std::filesystem::path> runs, const std::filesy
 
 /// For one run: DIR/report.html.
 void write_report(const std::filesystem::path& run);
+
+/// The page of a "study" or "map", from its result.json; runs are linked where they lie, beside the page.
+void write_study_report(const std::string& kind, const nlohmann::ordered_json& result,
+                        const std::filesystem::path& out);
 
 /// The JSON that the page shows; "<" is written as \u003c so that it can stand inside a script element.
 std::string report_json(std::span<const std::filesystem::path> runs);

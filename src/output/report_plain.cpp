@@ -46,6 +46,14 @@ std::string plain_report(std::string_view report_json) {
     add_rows(html, "", run.at("result"));
     html += "</table>\n";
   }
+  for (const char* kind : {"map", "study"})
+    if (data.contains(kind)) {
+      html += fmt::format("<h1>{}</h1>\n<p><strong>{}</strong></p>\n<table>\n",
+                          xml_escaped(data[kind].value("title", "")),
+                          xml_escaped(data[kind].value("summary", "")));
+      add_rows(html, "", data[kind]);
+      html += "</table>\n";
+    }
   return html +
          "<p>This is the plain report: the program was built where npm was missing. Install nodejs and npm, "
          "build "

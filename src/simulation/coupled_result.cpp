@@ -70,6 +70,7 @@ Json body_json(const CoupledModel& m, std::size_t b) {
     } else {
       j["outcome"] = "undecided";
     }
+    if (const auto clearance = m.splitter()->flight_clearance(b)) j["flight_clearance_m"] = *clearance;
     if (const auto wanted = c.bodies[b].wanted) {
       j["wanted"] = *wanted;
       const bool ejected = j["outcome"] == "ejected";

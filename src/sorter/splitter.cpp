@@ -54,6 +54,11 @@ void Splitter::watch(std::span<const Body> bodies, std::span<const Vec3> before,
   }
 }
 
+std::optional<double> Splitter::flight_clearance(std::size_t body) const {
+  if (!(approach_.at(body).velocity > 0.0)) return std::nullopt;
+  return approach_[body].clearance;
+}
+
 bool Splitter::all_passed() const {
   bool any = false;
   for (std::size_t b = 0; b < verdicts_.size(); ++b) {

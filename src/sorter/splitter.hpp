@@ -31,6 +31,9 @@ class Splitter {
   /// To be called after every step, with the positions before it and the time after it.
   void watch(std::span<const Body> bodies, std::span<const Vec3> before, double time, double dt);
   const std::optional<Verdict>& verdict(std::size_t body) const { return verdicts_.at(body); }
+  /// m, of the centre above the edge had the body flown on as it came within its own size of the plate, which
+  /// may have struck it since; nothing of a body that never came that way.
+  std::optional<double> flight_clearance(std::size_t body) const;
   /// Of the bodies that are judged; false of none.
   bool all_passed() const;
   void resize(std::size_t bodies);

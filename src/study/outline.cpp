@@ -412,9 +412,15 @@ std::vector<Proposal> OutlineFinder::ask(int count) {
   while (wanted()) {
     std::vector<bool> allowed(static_cast<std::size_t>(options.size()), true);
     if (two) {
-      const bool more_fine = asked(Fidelity::fine) < settings_.max_fine,
-                 alone = asked(Fidelity::fine) >= kPairs;
-      for (int n = 0; n < raster.nodes(); ++n) allowed[static_cast<std::size_t>(n)] = more_fine && alone;
+      const int pairs = std::min(kPairs, settings_.max_fine);
+      const bool more_fine =
+          asked(Fidelity::fine)<settings_.max_fine, alone = asked(Fidelity::fine) >= kPairs,
+                                room_for_coarse = settings_.max_runs - all_asked()>
+              pairs - asked(Fidelity::fine);
+      for (int n = 0; n < raster.nodes(); ++n) {
+        allowed[static_cast<std::size_t>(n)] = more_fine && alone;
+        if (!room_for_coarse) allowed[static_cast<std::size_t>(n + raster.nodes())] = false;
+      }
       const auto pair = [&](const auto& run) {
         if (more_fine && run.fidelity == Fidelity::coarse)
           allowed[static_cast<std::size_t>(option_of(run.at, Fidelity::fine))] = true;
@@ -434,6 +440,7 @@ std::vector<Proposal> OutlineFinder::ask(int count) {
         best = n;
       }
     }
+    if (best < 0) break;  // neither a coarse nor a fine run is left to make
     propose({nodes[static_cast<std::size_t>(best % raster.nodes())],
              best < raster.nodes() ? Fidelity::fine : Fidelity::coarse});
     run_at(best);
@@ -490,7 +497,11 @@ Outline OutlineFinder::outline() const {
 bool OutlineFinder::is_finished(const Outline& outline) const {
   const int runs = asked(Fidelity::fine) + asked(Fidelity::coarse);
   if (runs >= settings_.max_runs && pending_.empty()) return true;
-  return runs > settings_.first_runs && outline.area.error <= settings_.area_error * outline.area.value;
+  const bool tied =
+      settings_.coarse_cost == 0.0 ||
+      asked(Fidelity::fine) >= std::min(kPairs, settings_.max_fine);  // else the coarse ones speak
+  return tied && runs > settings_.first_runs &&
+         outline.area.error <= settings_.area_error * outline.area.value;
 }
 
 std::vector<double> OutlineFinder::chances(std::span<const Point2> places) const {

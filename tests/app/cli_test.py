@@ -10,7 +10,7 @@ import tempfile
 import unittest
 
 EJECTA = os.path.abspath(sys.argv.pop())
-COMMANDS = "run check plan explain new jet validate bench report cache".split()
+COMMANDS = "run check plan explain new jet validate bench report cache study map".split()
 BOUNCE = """[run]
 end_time = "1 ms"
 [flow]

@@ -25,3 +25,11 @@ set_tests_properties(app.stored_jet PROPERTIES LABELS slow TIMEOUT 3600)
 # 10,000 cases drawn from the schema: a quarter of an hour.
 add_test(NAME app.random_cases COMMAND test_app --gtest_filter=RandomCases.*)
 set_tests_properties(app.random_cases PROPERTIES LABELS slow TIMEOUT 3600 ENVIRONMENT EJECTA_RANDOM_CASES=10000)
+# Studies: kills, failures, the time of a task; long: 50 kills, 10,000 tasks.
+add_test(NAME app.study COMMAND ${Python3_EXECUTABLE} ${CMAKE_CURRENT_LIST_DIR}/study_test.py $<TARGET_FILE:ejecta>)
+set_tests_properties(app.study PROPERTIES LABELS fast TIMEOUT 600)
+add_test(NAME app.study_long COMMAND ${Python3_EXECUTABLE} ${CMAKE_CURRENT_LIST_DIR}/study_test.py $<TARGET_FILE:ejecta> 50 10000)
+set_tests_properties(app.study_long PROPERTIES LABELS slow TIMEOUT 3600)
+# A real SLURM of one node, where Debian's slurm-wlm is installed.
+add_test(NAME app.slurm COMMAND ${Python3_EXECUTABLE} ${CMAKE_CURRENT_LIST_DIR}/slurm_test.py $<TARGET_FILE:ejecta>)
+set_tests_properties(app.slurm PROPERTIES LABELS slow SKIP_RETURN_CODE 77 TIMEOUT 600 RUN_SERIAL ON)

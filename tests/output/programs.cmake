@@ -1,6 +1,6 @@
 # Programs of others that open our files: ParaView, a browser, Python. Each test opens the same sample run and
 # skips, with a message, where its program is absent.
-foreach(program make_sample_run make_report)
+foreach(program make_sample_run make_report make_study_report)
   add_executable(${program} ${CMAKE_CURRENT_LIST_DIR}/${program}.cpp)
   target_link_libraries(${program} PRIVATE ejecta_output)
 endforeach()
@@ -50,6 +50,17 @@ foreach(report "one,sample" "two,sample,pushed" "jet,jet")
   ejecta_program_test(output.browser_${name} "${NODE}" ${sources}/report/report_test.mjs
                       ${CMAKE_BINARY_DIR}/report/node_modules ${CMAKE_BINARY_DIR}/tests/screenshots ${html} ${parts})
   set_tests_properties(output.browser_${name} PROPERTIES FIXTURES_REQUIRED report_${name} RUN_SERIAL ON)
+endforeach()
+
+# The pages of a map and of a study.
+foreach(kind map study)
+  set(html ${CMAKE_BINARY_DIR}/tests/report-${kind}.html)
+  set(result ${sources}/report/sample-${kind}.json)
+  add_test(NAME output.report_${kind} COMMAND make_study_report ${html} ${kind} ${result})
+  set_tests_properties(output.report_${kind} PROPERTIES FIXTURES_SETUP report_${kind} LABELS "fast;output")
+  ejecta_program_test(output.browser_${kind} "${NODE}" ${sources}/report/study_page_test.mjs ${CMAKE_BINARY_DIR}/report/node_modules
+                      ${CMAKE_BINARY_DIR}/tests/screenshots ${kind} ${html} ${result})
+  set_tests_properties(output.browser_${kind} PROPERTIES FIXTURES_REQUIRED report_${kind} RUN_SERIAL ON)
 endforeach()
 
 include(${PROJECT_SOURCE_DIR}/cmake/fuzz.cmake)

@@ -18,6 +18,8 @@ void add_validate(CLI::App& app, Action& action);
 void add_bench(CLI::App& app, Action& action);
 void add_report(CLI::App& app, Action& action);
 void add_cache(CLI::App& app, Action& action);
+void add_study(CLI::App& app, Action& action);
+void add_map(CLI::App& app, Action& action);
 
 /// The whole program: parses the command line, does it and turns exceptions into exit codes.
 int run_command_line(int argc, const char* const* argv);

@@ -1,0 +1,116 @@
+#include "case/schema.hpp"
+
+/// Many runs of one case.
+namespace ejecta {
+
+using enum Dimension;
+
+std::vector<Key> keys(StudySpec& s) {
+  return {{"design", choice(s.design), none, anything, "How the values of the keys are put together", ""},
+          {.name = "samples",
+           .slot = &s.samples,
+           .bounds = {0, 1000000},
+           .help = "Runs of a \"latin-hypercube\" or \"sobol\" design",
+           .unset = "needed for these",
+           .example = "32"},
+          {"seed", &s.seed, none, not_negative, "Another number gives other samples", ""},
+          {.name = "quantities",
+           .slot = &s.quantities,
+           .help = "JSON pointers into result.json of a run: the columns of the table of results (SI units)",
+           .unset = "outcome, clearance and gain of velocity of the first body",
+           .example = R"(["/outcome", "/bodies/0/velocity_change_z_m_s"])"},
+          {"keep_runs", &s.keep_runs, none, anything,
+           "Keep the directory of each run, with its report; else only its result.json", ""}};
+}
+
+std::vector<Key> keys(VarySpec& s) {
+  return {
+      {.name = "key",
+       .slot = &s.key,
+       .help = "Key of the case file, as for --set",
+       .required = true,
+       .example = "\"valve.supply_pressure\""},
+      {.name = "values",
+       .slot = &s.values,
+       .help = "Its values, for \"grid\" and \"list\"",
+       .unset = "from `from`, `to` and `steps`",
+       .example = R"(["400 kPa gauge", "700 kPa gauge"])"},
+      {.name = "from",
+       .slot = &s.from,
+       .help = "One end of its range; of a key with numbers",
+       .unset = "none",
+       .example = "\"400 kPa gauge\""},
+      {.name = "to", .slot = &s.to, .help = "The other end", .unset = "none", .example = "\"900 kPa gauge\""},
+      {.name = "steps",
+       .slot = &s.steps,
+       .bounds = {0, 1000000},
+       .help = "Values of the range in a \"grid\" or \"list\", evenly spaced with both ends",
+       .unset = "needed for a range there",
+       .example = "6"}};
+}
+
+std::vector<Key> keys(MapSpec& s) {
+  return {
+      {.name = "body",
+       .slot = &s.body,
+       .help = "Name of the body that is mapped",
+       .unset = "the first on the belt",
+       .example = "\"particle\""},
+      {.name = "along",
+       .slot = &s.along,
+       .dimension = length,
+       .help = "Window along the belt: where, relative to the jet's axis, the body would be at "
+               "launch.arrives_at if no air blew",
+       .unset = "needed",
+       .example = R"(["-30 mm", "20 mm"])"},
+      {.name = "across",
+       .slot = &s.across,
+       .dimension = length,
+       .help = "Window across the belt, relative to the jet's axis",
+       .unset = "needed",
+       .example = R"(["-18 mm", "18 mm"])"},
+      {.name = "symmetric",
+       .slot = &s.symmetric,
+       .help = "The map is even in y: runs only at y >= 0. Claimed of a case that is not, it is refused",
+       .unset = "where body, jet and walls are",
+       .example = "true"},
+      {"coarse_refinement",
+       &s.coarse_refinement,
+       none,
+       {0.1, 1.0},
+       "grid.refinement of the coarse runs, which find the shape, over that of the fine ones, which correct "
+       "the edge; 1: only fine runs",
+       "Kennedy & O'Hagan 2000"},
+      {"max_runs", &s.max_runs, none, {5, 10000}, "Runs at most, coarse and fine together", ""},
+      {"max_fine_runs",
+       &s.max_fine_runs,
+       none,
+       {5, 10000},
+       "Fine runs at most, where there are coarse ones",
+       ""},
+      {"runs_at_once",
+       &s.runs_at_once,
+       none,
+       {1, 10000},
+       "Runs that are decided upon together. The map depends on it, but not on how many cores run them",
+       ""},
+      {"area_error",
+       &s.area_error,
+       none,
+       {0.0, 1.0},
+       "Stated error of the area at which the map is finished",
+       ""},
+      {"plate_error", &s.plate_error, length, not_negative,
+       "Along x and z: the plate's edge is known to within this, and the map is averaged over it",
+       "assumption: the paper averages, and does not say over what"},
+      {"seed", &s.seed, none, not_negative, "Of the random draws behind the errors", ""},
+      {.name = "measured",
+       .slot = &s.measured,
+       .help = "CSV of a measured outline, x and y with their units: drawn into the map, with the ratio of "
+               "areas",
+       .unset = "none",
+       .example = "\"outline.csv\"",
+       .file = true}};
+}
+
+}  // namespace ejecta

@@ -1,0 +1,107 @@
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "base/units.hpp"
+#include "case/extent.hpp"
+#include "case/findings.hpp"
+#include "case/load.hpp"
+#include "case/outline_file.hpp"
+#include "case/symmetry.hpp"
+
+/// [map]: whether there is something to map, and a window in which it can be.
+namespace ejecta {
+namespace {
+
+std::string mm(double metres) { return format_quantity(metres, Dimension::length); }
+
+bool has_plate_and_launch(const Case& c, Findings& found) {
+  if (!c.launch.enabled)
+    found.error("map", "a map needs the flight of the body to the jet, but there is no [launch]", "[launch]",
+                "[launch] belt_speed = \"3 m/s\"");
+  if (!c.splitter.enabled)
+    found.error("map", "a map needs a plate that decides, but there is no [splitter]", "[splitter]",
+                "[splitter] distance = \"250 mm\", height = \"18 mm\"");
+  return c.launch.enabled && c.splitter.enabled;
+}
+
+bool has_body(const Case& c, Findings& found) {
+  const std::size_t body = mapped_body(c);
+  if (body == c.bodies.size()) {
+    found.error(c.map.body.empty() ? "map" : "map.body",
+                c.map.body.empty() ? "no body comes from the belt"
+                                   : fmt::format("there is no body \"{}\"", c.map.body),
+                "the name of a [[body]] with on_belt = true", "body = \"particle\"");
+    return false;
+  }
+  if (!c.bodies[body].on_belt || !c.bodies[body].behind.empty()) {
+    found.error("map.body", fmt::format("\"{}\" is not placed on the belt by itself", c.bodies[body].name),
+                "a body with on_belt = true, and without `behind`");
+    return false;
+  }
+  return true;
+}
+
+void check_window(const Case& c, Findings& found) {
+  const MapSpec& m = c.map;
+  const auto range = [&](const char* key, const std::array<double, 2>& r) {
+    if (r[0] < r[1]) return true;
+    found.error(std::string("map.") + key,
+                fmt::format("the window from {} to {} has no width", mm(r[0]), mm(r[1])),
+                "its lower end, then its upper end", std::string(key) + " = [\"-18 mm\", \"18 mm\"]");
+    return false;
+  };
+  if (!range("along", m.along) || !range("across", m.across)) return;
+  const double plate = c.splitter.edge ? (*c.splitter.edge)[0] : c.splitter.distance;
+  if (m.along[1] >= plate - m.plate_error[0])
+    found.error("map.along", fmt::format("the window reaches to the plate, {} behind the jet", mm(plate)),
+                "places between the belt and the plate");
+  const auto box = grid_box(c);
+  if (!box || c.flow.solver == FlowSolver::none) return;
+  const Vec3 half = half_extent(c.bodies[mapped_body(c)]);
+  const double y = c.jet.nozzle.y(), right = box->high.y() - y, left = y - box->low.y();
+  if (m.across[1] + half.y() > right || m.across[0] - half.y() < -left)
+    found.error("map.across",
+                fmt::format("at its ends the body leaves the box, which is from {} to {} beside the jet",
+                            mm(-left), mm(right)),
+                "a window within the box, or a wider box");
+  if (c.valve.shape == ValveShape::trace) return;
+  // Where the centre may be while the jet blows, over the whole window.
+  const double v = c.launch.belt_speed, begins = c.valve.opens_at + c.valve.delay,
+               ends = begins + c.valve.duration + c.valve.fall_time;
+  const double first = m.along[0] + v * (begins - c.launch.arrives_at),
+               last = m.along[1] + v * (ends - c.launch.arrives_at), x = c.jet.nozzle.x();
+  if (c.valve.more_pulses.empty() && (first > box->high.x() - x || last < box->low.x() - x))
+    found.error("map.along",
+                fmt::format("no body of this window is in the box while the jet blows, from {} to {}",
+                            format_quantity(begins, Dimension::time), format_quantity(ends, Dimension::time)),
+                "places at launch.arrives_at from which it meets the jet", "along = [\"-30 mm\", \"20 mm\"]");
+}
+
+}  // namespace
+
+void sense_map(const Case& c, Findings& found) {
+  if (!c.map.enabled) return;
+  if (!has_plate_and_launch(c, found) || !has_body(c, found)) return;
+  check_window(c, found);
+  if (!c.map.measured.empty()) {
+    std::error_code none;
+    const std::string file = beside_case(c, c.map.measured);
+    if (!std::filesystem::is_regular_file(file, none))
+      found.error("map.measured", fmt::format("there is no file \"{}\"", file),
+                  "a file, relative to the folder of the case", "measured = \"outline.csv\"");
+    else read_outline_file(file, found.list);
+  }
+  const std::size_t body = mapped_body(c);
+  if (c.map.symmetric.value_or(false))
+    if (const Symmetry s = symmetry_across(c, body); !s.refused.empty())
+      found.error("map.symmetric", fmt::format("the map is not even in y: {}", s.refused),
+                  "false, or nothing", "symmetric = false");
+  if (c.map.max_fine_runs > c.map.max_runs)
+    found.error("map.max_fine_runs", "more fine runs than runs", "at most map.max_runs",
+                "max_fine_runs = 15");
+  if (c.bodies[body].copies > 1)
+    found.error("map.body", "copies of the body are on the belt too", "a body without copies");
+}
+
+}  // namespace ejecta
