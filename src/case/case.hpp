@@ -384,4 +384,6 @@ struct Case {
   ConvergenceSpec convergence;
 };
 
+inline bool is_incompressible(const Case& c) { return c.flow.solver == FlowSolver::incompressible; }
+
 }  // namespace ejecta

@@ -17,7 +17,7 @@ namespace ejecta {
 namespace {
 
 /// A case without a fluid has no grid; one cell stands for it.
-Grid grid_of(const Case& c) {
+Grid grid_or_cell(const Case& c) {
   if (c.flow.solver != FlowSolver::none) return make_grid(c);
   const Axis one = make_axis({0.0, 1.0}, {1}, {});
   return Grid(one, one, one);
@@ -30,7 +30,7 @@ constexpr double kFlightStep = 1e-4;
 
 CoupledModel::CoupledModel(const Case& c, const Note& note)
     : case_(with_copies(c)),
-      grid_(grid_of(c)),
+      grid_(grid_or_cell(c)),
       inflow_(case_.flow.solver == FlowSolver::none ? Inflow{} : inflow_of(case_, note)),
       flow_(make_flow_model(case_, grid_, inflow_)),
       scene_(make_scene(case_, flow_ ? &grid_ : nullptr)),
