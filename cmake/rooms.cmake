@@ -3,12 +3,18 @@
 
 add_library(ejecta_options INTERFACE)
 target_include_directories(ejecta_options INTERFACE ${PROJECT_SOURCE_DIR}/src)
+# Inline functions of the library stay its own: a program that includes its headers may be built for an older
+# processor. No path of the source tree comes into the program.
+target_compile_options(ejecta_options INTERFACE -march=${EJECTA_ARCH} -fvisibility-inlines-hidden
+                       -fno-semantic-interposition -ffile-prefix-map=${PROJECT_SOURCE_DIR}/=)
+# Objects lie alike in memory whatever processor a library or a program with its headers was built for.
+target_compile_definitions(ejecta_options INTERFACE EIGEN_MAX_STATIC_ALIGN_BYTES=16)
 # No -ffast-math: NaN must stay detectable and sums must keep their order.
 # GCC 12 warns of uninitialised __Y inside its own AVX-512 header.
 target_compile_options(ejecta_options INTERFACE -Wall -Wextra -Wpedantic -Wno-maybe-uninitialized
-                       -march=native -fno-math-errno
+                       -fopenmp-simd -fno-math-errno
                        -fno-trapping-math)
-target_link_libraries(ejecta_options INTERFACE fmt::fmt Eigen3::Eigen OpenMP::OpenMP_CXX)
+target_link_libraries(ejecta_options INTERFACE fmt::fmt Eigen3::Eigen Threads::Threads)
 target_compile_definitions(ejecta_options INTERFACE EIGEN_DONT_PARALLELIZE)
 if(EJECTA_DOUBLE)
   target_compile_definitions(ejecta_options INTERFACE EJECTA_DOUBLE)

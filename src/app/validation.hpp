@@ -50,8 +50,8 @@ Validation validate_case(const std::string& path, const RunOptions& options, con
 /// shipped ones that expect something. Throws InputError for a name that means nothing.
 std::vector<std::filesystem::path> validation_cases(const std::vector<std::string>& names,
                                                     const std::filesystem::path& shipped);
-/// Where validation/ and verification/ are: $EJECTA_SHARE, the source tree, or share/ejecta beside the
-/// program.
+/// Where cases/, validation/ and verification/ are: $EJECTA_SHARE, or share/ejecta in the nearest folder
+/// above the library, which is that of its installation or its build.
 std::filesystem::path shipped_cases();
 
 /// Quantity, computed, reference, error, pass, source; a line each.

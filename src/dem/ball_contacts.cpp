@@ -10,7 +10,7 @@
 namespace ejecta {
 namespace {
 
-constexpr int kAhead = 8;    // groups of pairs whose geometry is known before their forces are computed
+constexpr int kAhead = 8;         // groups of pairs whose geometry is known before their forces are computed
 constexpr int kGroupBlock = 128;  // groups of eight pairs one thread takes at a time; sums are kept by block
 
 /// Lanes at any address.

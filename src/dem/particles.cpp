@@ -15,7 +15,7 @@
 namespace ejecta {
 namespace {
 
-constexpr int kBodyBlock = 512;       // bodies one thread moves at a time; sums are kept by block
+constexpr int kBodyBlock = 512;   // bodies one thread moves at a time; sums are kept by block
 constexpr double kSlowest = 0.1;  // m/s, impact speed the step is made for at least
 
 void note_peak(ContactPeaks& p, double overlap, double force_squared, double dt) {

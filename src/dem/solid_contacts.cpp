@@ -9,8 +9,8 @@
 namespace ejecta {
 namespace {
 
-constexpr int kPairBlock = 32;             // pairs, or groups of them, one thread takes at a time
-constexpr double kSameHollow = 0.906;     // cosine of 25 degrees: normals of one hollow
+constexpr int kPairBlock = 32;         // pairs, or groups of them, one thread takes at a time
+constexpr double kSameHollow = 0.906;  // cosine of 25 degrees: normals of one hollow
 constexpr double kLeastDepth = 0.5;    // energy of a flat contact over force x mean thickness: a face; to
 constexpr double kLeastFactor = 1e-9;  // nothing, but for ratios of forces and energies
 constexpr double kMostDepth = 0.75;    // that of a corner

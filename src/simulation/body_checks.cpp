@@ -94,8 +94,9 @@ class BodyCheck {
     if ((at_.array() >= low.array()).all() && (at_.array() <= high.array()).all()) return false;
     const std::string what = spec_.on_belt ? "the body crosses the jet's axis outside the computed box"
                                            : "the body starts outside the computed box";
-    const std::string expected = fmt::format("x in {} to {}, y in {} to {}, z in {} to {}", mm_or_m(low[0]),
-                                             mm_or_m(high[0]), mm_or_m(low[1]), mm_or_m(high[1]), mm_or_m(low[2]), mm_or_m(high[2]));
+    const std::string expected =
+        fmt::format("x in {} to {}, y in {} to {}, z in {} to {}", mm_or_m(low[0]), mm_or_m(high[0]),
+                    mm_or_m(low[1]), mm_or_m(high[1]), mm_or_m(low[2]), mm_or_m(high[2]));
     if (spec_.on_belt || body_.motion == Motion::fixed)
       problem(Severity::error, place_key_, what + ": no air would ever reach it", expected);
     else problem(Severity::warning, place_key_, what + ": no air reaches it before it enters", expected);
@@ -126,10 +127,10 @@ class BodyCheck {
     if (wall && depth <= kRest * body_.shape.bounding_radius()) return;
     const std::string inside = fmt::format("a place at least {} further in", mm_or_m(depth));
     if (lets_air_in(spec) && !goes_on)
-      problem(
-          Severity::error, place_key_,
-          fmt::format("the body sticks {} out of the box through {}, where air flows in", mm_or_m(depth), name),
-          inside);
+      problem(Severity::error, place_key_,
+              fmt::format("the body sticks {} out of the box through {}, where air flows in", mm_or_m(depth),
+                          name),
+              inside);
     else if (spec_.on_belt && !goes_on)
       problem(
           Severity::error,
@@ -370,8 +371,8 @@ std::string resolution_words(const Resolution& r, const Body& body) {
     return fmt::format("{:.1f} cells across the smallest feature ({})", r.cells, mm_or_m(r.width.size));
   const Vec3& either = r.width.direction;
   const Vec3 d = (either.sum() < 0.0 ? -1.0 : 1.0) * either + Vec3(0, 0, 0);  // no minus before a nought
-  return fmt::format("{:.1f} cells across the {} along ({:.2g}, {:.2g}, {:.2g})", r.cells, mm_or_m(r.width.size),
-                     d.x(), d.y(), d.z());
+  return fmt::format("{:.1f} cells across the {} along ({:.2g}, {:.2g}, {:.2g})", r.cells,
+                     mm_or_m(r.width.size), d.x(), d.y(), d.z());
 }
 
 std::vector<Problem> check_bodies(const Case& c, const Grid& grid, std::span<const Body> bodies) {
