@@ -16,7 +16,7 @@ show_progress() {  # ninja's lines "[3/120] ..." in; everything goes to the log
   local line tenth shown=-1
   while IFS= read -r line; do
     echo "$line" >> "$log"
-    [[ $line =~ ^\[([0-9]+)/([0-9]+)\] ]] || continue
+    [[ $line =~ ^\[([1-9][0-9]*)/([0-9]+)\] ]] || continue
     if [[ -t 1 ]]; then
       printf '\rbuilding %s: %d of %d ' "$preset" "${BASH_REMATCH[1]}" "${BASH_REMATCH[2]}"
     else

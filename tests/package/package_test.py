@@ -36,9 +36,9 @@ assert listed and all(case.startswith(str(prefix)) for case in listed), listed
 # What goes with the program.
 assert ".SH ejecta run" in (prefix / "share" / "man" / "man1" / "ejecta.1").read_text()
 completion = prefix / "share" / "bash-completion" / "completions" / "ejecta"
-complete = f'. {completion}; COMP_WORDS=(ejecta {{}}); COMP_CWORD=$((${{#COMP_WORDS[@]}} - 1)); _ejecta; echo "${{COMPREPLY[@]}}"'
+complete = '. "$0"; COMP_WORDS=(ejecta "$@"); COMP_CWORD=$#; _ejecta; echo "${COMPREPLY[@]}"'
 for words, expected in (("val", "validate"), ("explain valve.rise", "valve.rise_time"), ("run --res", "--resume")):
-    answer = run("bash", "-c", complete.format(words), capture_output=True, text=True).stdout.split()
+    answer = run("bash", "-c", complete, completion, *words.split(), capture_output=True, text=True).stdout.split()
     assert expected in answer, (words, answer)
 
 held = [p for p in prefix.rglob("*") if p.is_file() and os.fsencode(source) + b"/" in p.read_bytes()]
