@@ -14,11 +14,16 @@ function(ejecta_fuzz name)
   set(binary ${CMAKE_BINARY_DIR}/fuzz/${name}_fuzz)
   list(TRANSFORM FUZZ_SOURCES PREPEND ${PROJECT_SOURCE_DIR}/src/)
   list(TRANSFORM FUZZ_INCLUDES PREPEND -isystem)
-  set(sources ${PROJECT_SOURCE_DIR}/fuzz/${name}_fuzz.cpp ${FUZZ_SOURCES})
   file(MAKE_DIRECTORY ${CMAKE_BINARY_DIR}/fuzz/${name}_new)
-  add_custom_command(OUTPUT ${binary} DEPENDS ${sources}
-    COMMAND ${FUZZ_COMPILER} -std=c++20 -O1 -g -fsanitize=fuzzer,address,undefined -fno-sanitize-recover=all
-            -I${PROJECT_SOURCE_DIR}/src ${FUZZ_INCLUDES} ${sources} -o ${binary} ${FUZZ_LIBS}
+  # One translation unit, so that headers are read once.
+  set(all ${CMAKE_BINARY_DIR}/fuzz/${name}_fuzz_all.cpp)
+  list(TRANSFORM FUZZ_SOURCES REPLACE "(.+)" "#include \"\\1\"\n" OUTPUT_VARIABLE includes)
+  string(JOIN "" includes ${includes} "#include \"${PROJECT_SOURCE_DIR}/fuzz/${name}_fuzz.cpp\"\n")
+  file(CONFIGURE OUTPUT ${all} CONTENT "${includes}" @ONLY)
+  add_custom_command(OUTPUT ${binary} DEPENDS ${all} DEPFILE ${binary}.d
+    COMMAND ${FUZZ_COMPILER} -std=c++20 -O1 -g1 -fsanitize=fuzzer,address,undefined -fno-sanitize-recover=all
+            -I${PROJECT_SOURCE_DIR}/src ${FUZZ_INCLUDES} -MD -MF ${binary}.d -MT ${binary} ${all} -o ${binary}
+            ${FUZZ_LIBS}
     COMMENT "Building the fuzzer of ${name}")
   add_custom_target(fuzz_${name} ALL DEPENDS ${binary})
   add_test(NAME fuzz.${name} COMMAND ${binary} -runs=50000 -max_total_time=10 -seed=1 -print_final_stats=1

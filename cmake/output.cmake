@@ -10,9 +10,10 @@ if(NOT revision)
 endif()
 string(TOUPPER "${CMAKE_BUILD_TYPE}" build_type)
 get_target_property(options ejecta_options INTERFACE_COMPILE_OPTIONS)
+list(FILTER options EXCLUDE REGEX "prefix-map")  # holds a path of the source tree
 string(JOIN " " flags ${CMAKE_CXX_FLAGS} ${CMAKE_CXX_FLAGS_${build_type}} ${options})
 set_source_files_properties(${PROJECT_SOURCE_DIR}/src/output/build_info.cpp PROPERTIES COMPILE_DEFINITIONS
-  "EJECTA_VERSION=\"${PROJECT_VERSION}\";EJECTA_GIT_REVISION=\"${revision}\";EJECTA_COMPILER=\"${CMAKE_CXX_COMPILER_ID} ${CMAKE_CXX_COMPILER_VERSION}\";EJECTA_COMPILE_FLAGS=\"${flags}\"")
+  "EJECTA_VERSION=\"${PROJECT_VERSION}\";EJECTA_GIT_REVISION=\"${revision}\";EJECTA_COMPILER=\"${CMAKE_CXX_COMPILER_ID} ${CMAKE_CXX_COMPILER_VERSION}\";EJECTA_COMPILE_FLAGS=\"${flags}\";EJECTA_ARCH=\"${EJECTA_ARCH}\"")
 
 # The report page (report/, TypeScript) is built where npm is found and becomes part of the program. Elsewhere,
 # or when npm cannot fetch its packages, the page is empty and `ejecta` writes a plain report that says so.

@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# tools/build.sh PRESET [TARGET...]: configures (once) and builds; quiet unless something fails.
+# tools/build.sh PRESET [TARGET...]: configures (once) and builds. Shows how far it is, on one line in a terminal and
+# every tenth part elsewhere; the compiler's words only if something fails.
 set -euo pipefail
 preset=$1
 shift
@@ -10,5 +11,23 @@ if [[ ! -f build/$preset/build.ninja ]]; then
 fi
 targets=()
 (($# > 0)) && targets=(--target "$@")
+
+show_progress() {  # ninja's lines "[3/120] ..." in; everything goes to the log
+  local line tenth shown=-1
+  while IFS= read -r line; do
+    echo "$line" >> "$log"
+    [[ $line =~ ^\[([1-9][0-9]*)/([0-9]+)\] ]] || continue
+    if [[ -t 1 ]]; then
+      printf '\rbuilding %s: %d of %d ' "$preset" "${BASH_REMATCH[1]}" "${BASH_REMATCH[2]}"
+    else
+      tenth=$((10 * BASH_REMATCH[1] / BASH_REMATCH[2]))
+      ((tenth == shown)) || printf 'building %s: %d of %d\n' "$preset" "${BASH_REMATCH[1]}" "${BASH_REMATCH[2]}"
+      shown=$tenth
+    fi
+  done
+  if [[ -t 1 ]]; then echo; fi
+}
+
 echo "building $preset ..."
-cmake --build "build/$preset" -j "$(nproc)" "${targets[@]}" > "$log" 2>&1 || { tail -n 60 "$log"; exit 1; }
+: > "$log"
+cmake --build "build/$preset" -j "$(nproc)" "${targets[@]}" 2>&1 | show_progress || { tail -n 60 "$log"; exit 1; }

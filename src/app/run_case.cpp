@@ -63,6 +63,9 @@ class ProgressOfRun {
     p.file = output::RunDirectory::open(directory_).progress();
     progress_.emplace(std::cerr, p);
     progress_->note(start_line(case_, m, directory_));
+    if (thread_count() > core_count())
+      progress_->note(fmt::format("{} threads share {} core{}: more threads than cores make a run slower",
+                                  thread_count(), core_count(), core_count() == 1 ? "" : "s"));
   }
   void note(const std::string& line) {
     if (progress_) progress_->note(line);

@@ -425,4 +425,6 @@ struct Case {
   MapSpec map;
 };
 
+inline bool is_incompressible(const Case& c) { return c.flow.solver == FlowSolver::incompressible; }
+
 }  // namespace ejecta

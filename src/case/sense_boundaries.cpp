@@ -15,8 +15,6 @@
 namespace ejecta {
 namespace {
 
-bool is_incompressible(const Case& c) { return c.flow.solver == FlowSolver::incompressible; }
-
 /// A jet enters through one face, into the box, and not at a grazing angle.
 void check_jet_face(const Case& c, std::size_t f, const std::string& key, Findings& found) {
   if (const auto first = static_cast<std::size_t>(*jet_face(c)); first != f)

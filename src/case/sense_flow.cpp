@@ -13,8 +13,6 @@ namespace ejecta {
 namespace {
 
 bool has_flow(const Case& c) { return c.flow.solver != FlowSolver::none; }
-bool is_incompressible(const Case& c) { return c.flow.solver == FlowSolver::incompressible; }
-
 std::string axis_key(std::size_t a) { return std::string("grid.") + axis_names[a]; }
 
 }  // namespace

@@ -10,8 +10,8 @@
 namespace ejecta {
 namespace {
 
-constexpr int kAhead = 8;    // groups of pairs whose geometry is known before their forces are computed
-constexpr int kBlock = 128;  // groups of eight pairs one thread takes at a time; sums are kept by block
+constexpr int kAhead = 8;         // groups of pairs whose geometry is known before their forces are computed
+constexpr int kGroupBlock = 128;  // groups of eight pairs one thread takes at a time; sums are kept by block
 
 /// Lanes at any address.
 using LooseLanes = double __attribute__((vector_size(kLanes * sizeof(double)), aligned(8), may_alias));
@@ -212,7 +212,7 @@ void BallContacts::compute_groups(const Parts& parts, const Materials& materials
     }
     for (int k = 0; k < kLanes; ++k) *reinterpret_cast<LooseLanes*>(&rows_[n + at(k)].fx) = out[k];
   };
-  for_each_block(groups, kBlock, [&](int, int begin, int end) {
+  for_each_block(groups, kGroupBlock, [&](int, int begin, int end) {
     Contact<Lanes> c[kAhead];
     for (int first = begin; first < end; first += kAhead) {
       const int count = std::min(kAhead, end - first);
@@ -259,7 +259,7 @@ void BallContacts::share_energy(const Parts& parts, const Materials& materials, 
         materials.pair(static_cast<int>(a.material), static_cast<int>(b.material));
     return {near.normal, with_law(materials.law(), [&](auto law) { return law.spring(c, p).energy; })};
   };
-  for_each_block(static_cast<int>(groups_.size()) - 1, kBlock, [&](int, int begin, int end) {
+  for_each_block(static_cast<int>(groups_.size()) - 1, kGroupBlock, [&](int, int begin, int end) {
     thread_local std::vector<Spring> springs;
     for (int g = begin; g < end; ++g) {
       springs.clear();

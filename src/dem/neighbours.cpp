@@ -8,7 +8,7 @@
 namespace ejecta {
 namespace {
 
-constexpr int kBlock = 256;  // items searched by one thread at a time
+constexpr int kSearchBlock = 256;  // items searched by one thread at a time
 
 }  // namespace
 
@@ -101,10 +101,10 @@ const std::vector<std::pair<int, int>>& NeighbourSearch::find(const std::vector<
   for (const Item& item : items) largest = std::max(largest, item.radius);
   sort_into_cells(items, 2 * largest + reach);
 
-  const int count = static_cast<int>(items.size()), blocks = block_count(count, kBlock);
+  const int count = static_cast<int>(items.size()), blocks = block_count(count, kSearchBlock);
   if (found_.size() < static_cast<std::size_t>(blocks)) found_.resize(static_cast<std::size_t>(blocks));
   for (Found& found : found_) found.pairs.clear();
-  for_each_block(count, kBlock, [&](int b, int begin, int end) {
+  for_each_block(count, kSearchBlock, [&](int b, int begin, int end) {
     Found& out = found_[static_cast<std::size_t>(b)];
     for (int p = begin; p < end; ++p) {
       const int i = sorted_[static_cast<std::size_t>(p)].index;

@@ -15,7 +15,7 @@
 namespace ejecta {
 namespace {
 
-constexpr int kBlock = 512;       // bodies one thread moves at a time; sums are kept by block
+constexpr int kBodyBlock = 512;   // bodies one thread moves at a time; sums are kept by block
 constexpr double kSlowest = 0.1;  // m/s, impact speed the step is made for at least
 
 void note_peak(ContactPeaks& p, double overlap, double force_squared, double dt) {
@@ -119,9 +119,9 @@ void Particles::move_bodies(double dt, std::span<const Load> loads, bool kick, b
   ScopedTimer timer(times_.motion);
   const int count = static_cast<int>(bodies_.size());
   const Vec4 gravity = vec4(gravity_);
-  block_moved_.resize(static_cast<std::size_t>(block_count(count, kBlock)));
+  block_moved_.resize(static_cast<std::size_t>(block_count(count, kBodyBlock)));
   block_work_.resize(block_moved_.size());
-  for_each_block(count, kBlock, [&](int block, int begin, int end) {
+  for_each_block(count, kBodyBlock, [&](int block, int begin, int end) {
     Work work;
     Vec4 by_contacts{};
     Farthest<float> spheres;  // m2

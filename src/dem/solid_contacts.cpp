@@ -9,8 +9,8 @@
 namespace ejecta {
 namespace {
 
-constexpr int kBlock = 32;             // pairs, or groups of them, one thread takes at a time
-constexpr double kSameWay = 0.906;     // cosine of 25 degrees: normals of one hollow
+constexpr int kPairBlock = 32;         // pairs, or groups of them, one thread takes at a time
+constexpr double kSameHollow = 0.906;  // cosine of 25 degrees: normals of one hollow
 constexpr double kLeastDepth = 0.5;    // energy of a flat contact over force x mean thickness: a face; to
 constexpr double kLeastFactor = 1e-9;  // nothing, but for ratios of forces and energies
 constexpr double kMostDepth = 0.75;    // that of a corner
@@ -190,7 +190,7 @@ void SolidContacts::choose(const World& world, int begin, int end) {
       if (p.hidden) p.touch.side = q.side;  // the surface goes on there, with the same sides
     }
     for (std::size_t m = 0; m < chosen.size() && !p.hidden; ++m)
-      p.hidden = pair(chosen[m]).touch.normal.dot(p.touch.normal) > kSameWay;
+      p.hidden = pair(chosen[m]).touch.normal.dot(p.touch.normal) > kSameHollow;
     if (!p.hidden) chosen.push_back(deepest[n]);
   }
   for (const int n : chosen) {
@@ -199,7 +199,7 @@ void SolidContacts::choose(const World& world, int begin, int end) {
     for (int m = begin; m < end; ++m) {
       ContactHistory& h = pair(m).history;
       if (!h.touched() || (pair(m).touch.overlap > 0 && !pair(m).hidden)) continue;
-      if (!(vec(h.normal).dot(p.touch.normal) > kSameWay)) continue;
+      if (!(vec(h.normal).dot(p.touch.normal) > kSameHollow)) continue;
       p.history.slip = h.slip;
       p.history.roll = h.roll;
       p.history.energy = h.energy;
@@ -298,7 +298,7 @@ void SolidContacts::compute(const Parts& parts, std::span<const Body> bodies, st
                             const Materials& materials, const Domain& domain, std::span<const Vec3> velocity,
                             std::span<const Vec3> spin, double dt) {
   const World world{parts, bodies, walls, materials, velocity, spin};
-  for_each_block(static_cast<int>(pairs_.size()), kBlock, [&](int, int begin, int end) {
+  for_each_block(static_cast<int>(pairs_.size()), kPairBlock, [&](int, int begin, int end) {
     for (int n = begin; n < end; ++n) {
       SolidPair& p = pairs_[static_cast<std::size_t>(n)];
       const bool away = world.is_away(p);
@@ -308,11 +308,11 @@ void SolidContacts::compute(const Parts& parts, std::span<const Body> bodies, st
       p.hidden = false;
     }
   });
-  for_each_block(static_cast<int>(runs_.size()) / 2, kBlock, [&](int, int begin, int end) {
+  for_each_block(static_cast<int>(runs_.size()) / 2, kPairBlock, [&](int, int begin, int end) {
     for (int n = begin; n < end; ++n)
       choose(world, runs_[2 * static_cast<std::size_t>(n)], runs_[2 * static_cast<std::size_t>(n) + 1]);
   });
-  for_each_block(static_cast<int>(first_.size()) - 1, kBlock, [&](int, int begin, int end) {
+  for_each_block(static_cast<int>(first_.size()) - 1, kPairBlock, [&](int, int begin, int end) {
     for (int n = begin; n < end; ++n)
       apply_laws(world, first_[static_cast<std::size_t>(n)], first_[static_cast<std::size_t>(n) + 1], dt);
   });

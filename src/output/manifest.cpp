@@ -48,6 +48,7 @@ nlohmann::ordered_json make_manifest(const Provenance& p) {
           {"git_revision", git_revision()},
           {"compiler", compiler()},
           {"compile_flags", compile_flags()},
+          {"kernels", kernels()},
           {"precision", kPrecision},
           {"command", p.command},
           {"case", p.case_path},

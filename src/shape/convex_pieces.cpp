@@ -1,8 +1,8 @@
 #include <algorithm>
 #include <numeric>
-#include <tuple>
 
 #include "shape/convex_parts.hpp"
+#include "shape/point_order.hpp"
 
 namespace ejecta {
 namespace {
@@ -31,10 +31,6 @@ std::vector<std::vector<int>> pieces_of(const TriangleMesh& mesh) {
     p.erase(std::unique(p.begin(), p.end()), p.end());
   }
   return pieces;
-}
-
-bool before(const Vec3& a, const Vec3& b) {
-  return std::tie(a.x(), a.y(), a.z()) < std::tie(b.x(), b.y(), b.z());
 }
 
 /// Whether all points lie on the hull, but for hollows too shallow to count.

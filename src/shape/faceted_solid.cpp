@@ -2,14 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <tuple>
+
+#include "shape/point_order.hpp"
 
 namespace ejecta {
 namespace {
-
-bool before(const Vec3& a, const Vec3& b) {
-  return std::tie(a.x(), a.y(), a.z()) < std::tie(b.x(), b.y(), b.z());
-}
 
 /// Where an edge meets the plane: the same bits for both of its directions, so that neighbouring faces agree.
 Vec3 crossing(const Vec3& p, double hp, const Vec3& q, double hq) {

@@ -35,7 +35,7 @@ constexpr double kHugeWall = 20.0;                       // m across
 constexpr double kHeavy = 100.0;                         // kg
 constexpr double kLightest = 10.0, kHeaviest = 23000.0;  // kg/m3; foam and osmium lie in between
 
-std::string mm(double length) {
+std::string mm_or_m(double length) {
   return std::abs(length) < 1.0 ? fmt::format("{:.4g} mm", 1e3 * length) : fmt::format("{:.4g} m", length);
 }
 
@@ -80,7 +80,7 @@ class BodyCheck {
       const bool millimetres = from_file(spec_) && spec_.scale == 1.0 && 1e-3 * size <= room;
       problem(Severity::error, key_,
               fmt::format("the body is larger than the box along {}: {} in {}",
-                          axis_names[static_cast<std::size_t>(d)], mm(size), mm(room)),
+                          axis_names[static_cast<std::size_t>(d)], mm_or_m(size), mm_or_m(room)),
               millimetres ? "a larger [grid] or a smaller body; is the file in mm? Then scale = 0.001"
                           : "a larger [grid] or a smaller body",
               millimetres ? "scale = 0.001" : "");
@@ -94,8 +94,9 @@ class BodyCheck {
     if ((at_.array() >= low.array()).all() && (at_.array() <= high.array()).all()) return false;
     const std::string what = spec_.on_belt ? "the body crosses the jet's axis outside the computed box"
                                            : "the body starts outside the computed box";
-    const std::string expected = fmt::format("x in {} to {}, y in {} to {}, z in {} to {}", mm(low[0]),
-                                             mm(high[0]), mm(low[1]), mm(high[1]), mm(low[2]), mm(high[2]));
+    const std::string expected =
+        fmt::format("x in {} to {}, y in {} to {}, z in {} to {}", mm_or_m(low[0]), mm_or_m(high[0]),
+                    mm_or_m(low[1]), mm_or_m(high[1]), mm_or_m(low[2]), mm_or_m(high[2]));
     if (spec_.on_belt || body_.motion == Motion::fixed)
       problem(Severity::error, place_key_, what + ": no air would ever reach it", expected);
     else problem(Severity::warning, place_key_, what + ": no air reaches it before it enters", expected);
@@ -124,12 +125,12 @@ class BodyCheck {
     const bool wall = spec.type == BoundaryType::wall || spec.type == BoundaryType::moving_wall;
     const bool held = body_.motion != Motion::free;
     if (wall && depth <= kRest * body_.shape.bounding_radius()) return;
-    const std::string inside = fmt::format("a place at least {} further in", mm(depth));
+    const std::string inside = fmt::format("a place at least {} further in", mm_or_m(depth));
     if (lets_air_in(spec) && !goes_on)
-      problem(
-          Severity::error, place_key_,
-          fmt::format("the body sticks {} out of the box through {}, where air flows in", mm(depth), name),
-          inside);
+      problem(Severity::error, place_key_,
+              fmt::format("the body sticks {} out of the box through {}, where air flows in", mm_or_m(depth),
+                          name),
+              inside);
     else if (spec_.on_belt && !goes_on)
       problem(
           Severity::error,
@@ -139,15 +140,15 @@ class BodyCheck {
           fmt::format(
               "the domain is too small for the path: the body sticks {} out of the box through {} where it "
               "crosses the jet's axis",
-              mm(depth), name),
+              mm_or_m(depth), name),
           "a larger [grid] or a path nearer to the jet");
     else if (wall && !held)
       problem(Severity::error, place_key_,
-              fmt::format("the body starts {} inside the wall {}", mm(depth), name), inside);
+              fmt::format("the body starts {} inside the wall {}", mm_or_m(depth), name), inside);
     else if (!goes_on && !wall)
       problem(Severity::warning, place_key_,
               fmt::format("the body starts {} outside the box through {}: air acts on the part inside alone",
-                          mm(depth), name),
+                          mm_or_m(depth), name),
               inside);
   }
 
@@ -262,7 +263,7 @@ void ask_about_walls(const Case& c, std::span<const Wall> walls, std::vector<Pro
     const double across = extent_of(read_stl(beside_case(c, w.file), w.scale)).norm();
     if (w.scale == 1.0 && across > kHugeWall)
       found.push_back({.key = fmt::format("wall.{}.file", n),
-                       .what = fmt::format("the wall is {} across", mm(across)),
+                       .what = fmt::format("the wall is {} across", mm_or_m(across)),
                        .expected = "a size in metres; is the file in mm? Then scale = 0.001",
                        .example = "scale = 0.001",
                        .severity = Severity::warning});
@@ -311,7 +312,7 @@ void ask_about_size(const BodySpec& spec, const Body& body, std::size_t n, bool 
     ask(spec.mass      ? key + ".mass"
         : spec.density ? key + ".density"
                        : key,
-        fmt::format("the body is {} across{}", mm(size), mass),
+        fmt::format("the body is {} across{}", mm_or_m(size), mass),
         "grams rather than tonnes? See its size and density", "density = \"2700 kg/m3\"");
   if (body.motion != Motion::free) return;
   const double density = body.mass / body.shape.mass_properties().volume;
@@ -376,11 +377,11 @@ Resolution resolution_of(const Grid& grid, const Body& body, const Vec3& place) 
 std::string resolution_words(const Resolution& r, const Body& body) {
   const bool smallest = r.width.size <= body.shape.smallest_feature() * (1 + 1e-6);
   if (smallest)
-    return fmt::format("{:.1f} cells across the smallest feature ({})", r.cells, mm(r.width.size));
+    return fmt::format("{:.1f} cells across the smallest feature ({})", r.cells, mm_or_m(r.width.size));
   const Vec3& either = r.width.direction;
   const Vec3 d = (either.sum() < 0.0 ? -1.0 : 1.0) * either + Vec3(0, 0, 0);  // no minus before a nought
-  return fmt::format("{:.1f} cells across the {} along ({:.2g}, {:.2g}, {:.2g})", r.cells, mm(r.width.size),
-                     d.x(), d.y(), d.z());
+  return fmt::format("{:.1f} cells across the {} along ({:.2g}, {:.2g}, {:.2g})", r.cells,
+                     mm_or_m(r.width.size), d.x(), d.y(), d.z());
 }
 
 std::vector<Problem> check_bodies(const Case& c, const Grid& grid, std::span<const Body> bodies) {

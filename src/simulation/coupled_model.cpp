@@ -18,7 +18,7 @@ namespace ejecta {
 namespace {
 
 /// A case without a fluid has no grid; one cell stands for it.
-Grid grid_of(const Case& c) {
+Grid grid_or_cell(const Case& c) {
   if (c.flow.solver != FlowSolver::none) return make_grid(c);
   const Axis one = make_axis({0.0, 1.0}, {1}, {});
   return Grid(one, one, one);
@@ -34,7 +34,7 @@ CoupledModel::CoupledModel(const Case& c, const Note& note)
 
 CoupledModel::CoupledModel(const Case& c, Inflow inflow)
     : case_(with_copies(c)),
-      grid_(grid_of(c)),
+      grid_(grid_or_cell(c)),
       inflow_(std::move(inflow)),
       flow_(make_flow_model(case_, grid_, inflow_)),
       scene_(make_scene(case_, flow_ ? &grid_ : nullptr)),

@@ -1,3 +1,4 @@
+#include <dlfcn.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -81,11 +82,13 @@ std::vector<std::string> names_of(const std::vector<path>& files) {
 
 path shipped_cases() {
   if (const char* share = std::getenv("EJECTA_SHARE")) return share;
-  const path source = EJECTA_SOURCE_DIR;
-  if (std::filesystem::is_directory(source / "verification")) return source;
+  Dl_info here{};
+  ::dladdr(reinterpret_cast<const void*>(&shipped_cases), &here);
   std::error_code ignored;
-  return std::filesystem::read_symlink("/proc/self/exe", ignored).parent_path().parent_path() / "share" /
-         "ejecta";
+  const path library = std::filesystem::canonical(here.dli_fname ? here.dli_fname : "", ignored);
+  for (path above = library.parent_path(); above.has_relative_path(); above = above.parent_path())
+    if (const path share = above / "share" / "ejecta"; std::filesystem::is_directory(share)) return share;
+  return path("share") / "ejecta";
 }
 
 }  // namespace ejecta

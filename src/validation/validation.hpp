@@ -60,8 +60,8 @@ std::vector<std::filesystem::path> validation_cases(const std::vector<std::strin
                                                     const std::filesystem::path& shipped);
 /// A name for each file: its own, with as many folders before it as tell it from the others, "dem-settling".
 std::vector<std::string> names_of(const std::vector<std::filesystem::path>& files);
-/// Where validation/ and verification/ are: $EJECTA_SHARE, the source tree, or share/ejecta beside the
-/// program.
+/// Where cases/, validation/ and verification/ are: $EJECTA_SHARE, or share/ejecta in the nearest folder
+/// above the library, which is that of its installation or its build.
 std::filesystem::path shipped_cases();
 
 /// Quantity, computed, reference, error, pass, source; a line each.

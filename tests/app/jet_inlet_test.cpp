@@ -14,7 +14,7 @@
 namespace ejecta {
 namespace {
 
-constexpr double kBlown = 0.8e-3;  // s: the jet has come through most of the box
+constexpr double kBlowing = 0.8e-3;  // s: the jet has come through most of the box
 constexpr std::array<const char*, 6> kFaces{"x_min", "x_max", "y_min", "y_max", "z_min", "z_max"};
 const std::array<const char*, 3> kSolvers{"incompressible", "compressible-piso", "compressible"};
 
@@ -53,7 +53,7 @@ duration = "8 ms"
   return text;
 }
 
-/// A box after kBlown, to be asked for velocities.
+/// A box after kBlowing, to be asked for velocities.
 struct Blown {
   Case c;
   Grid grid;
@@ -62,8 +62,8 @@ struct Blown {
       : c(parse_case(text, "box")), grid(make_grid(c)), flow(make_flow_model(c, grid, inflow_of(c))) {
     CutCells none;
     double t = 0.0;
-    while (t < kBlown) {
-      const double dt = std::min(flow->stable_dt(t), kBlown - t);
+    while (t < kBlowing) {
+      const double dt = std::min(flow->stable_dt(t), kBlowing - t);
       flow->advance(t, dt, none);
       t += dt;
     }

@@ -11,7 +11,7 @@
 namespace ejecta {
 namespace {
 
-constexpr double kSize = 10e-3, kSpeed = 0.5;  // m, m/s
+constexpr double kWidth = 10e-3, kSpeed = 0.5;  // m, m/s
 
 struct Kind {
   const char* name;
@@ -23,24 +23,24 @@ Quat between(const Vec3& from, const Vec3& to) { return Quat::FromTwoVectors(fro
 
 std::vector<Kind> kinds() {
   const Vec3 down(0, 0, -1);
-  const Shape box = make_box(Vec3::Constant(kSize));
-  std::vector<Kind> all{{"sphere", make_sphere(kSize)},
-                        {"cluster of 27", make_cluster(Vec3::Constant(kSize), {3, 3, 3}, 0.5 * kSize)},
+  const Shape box = make_box(Vec3::Constant(kWidth));
+  std::vector<Kind> all{{"sphere", make_sphere(kWidth)},
+                        {"cluster of 27", make_cluster(Vec3::Constant(kWidth), {3, 3, 3}, 0.5 * kWidth)},
                         {"box on face", box},
                         {"box on edge", box, between(Vec3(1, 0, 1), down)},
                         {"box on corner", box, between(Vec3(1, 1, 1), down)},
-                        {"superquadric", make_superquadric(kSize * Vec3(1, 0.9, 0.8), 2, 2)},
-                        {"superquadric, blunt", make_superquadric(kSize * Vec3(1, 1, 1), 5, 5)}};
+                        {"superquadric", make_superquadric(kWidth * Vec3(1, 0.9, 0.8), 2, 2)},
+                        {"superquadric, blunt", make_superquadric(kWidth * Vec3(1, 1, 1), 5, 5)}};
   for (const int level : {0, 2, 4}) {
     TriangleMesh mesh = icosphere(level);
-    for (Vec3& v : mesh.vertices) v *= 0.5 * kSize;
+    for (Vec3& v : mesh.vertices) v *= 0.5 * kWidth;
     all.push_back({level == 0   ? "mesh of 20"
                    : level == 2 ? "mesh of 320"
                                 : "mesh of 5120",
                    make_mesh(mesh, "ico"), level == 0 ? between(mesh.vertices[0], down) : Quat::Identity()});
   }
   for (const int legs : {2, 4}) {
-    const Shape table = make_mesh(table_mesh(legs, kSize), "table");
+    const Shape table = make_mesh(table_mesh(legs, kWidth), "table");
     all.push_back({legs == 2 ? "table of 4 legs" : "table of 16 legs", table, table.frame().rotation});
   }
   return all;

@@ -8,7 +8,7 @@
 namespace ejecta {
 namespace {
 
-constexpr double kAir = 1.5e-5;  // m2/s
+constexpr double kGas = 1.5e-5;  // m2/s
 const std::array<double, 5> kSpeeds{0.01, 0.3, 3.0, 30.0, 120.0}, kDistances{1e-5, 1e-4, 1e-3, 3e-3, 2e-2};
 
 TEST(WallLaw, TheLayerMeetsTheLogarithmWithoutAStep) {
@@ -43,7 +43,7 @@ TEST(WallLaw, RoughnessOnlyAddsFriction) {
     for (const double y : kDistances) {
       double before = 0.0;
       for (const double sand : {0.0, 0.01, 0.1, 0.5}) {
-        const double tau = wall_law::friction_velocity(Real(u), Real(y), Real(kAir), Real(sand * y));
+        const double tau = wall_law::friction_velocity(Real(u), Real(y), Real(kGas), Real(sand * y));
         EXPECT_GE(tau, before * (1 - 1e-3)) << u << " " << y << " " << sand;
         before = tau;
       }
@@ -54,8 +54,8 @@ TEST(WallLaw, FrictionVelocityInvertsTheLaw) {
   for (const double u : kSpeeds)
     for (const double y : kDistances)
       for (const double sand : {0.0, 0.02, 0.3}) {
-        const double tau = wall_law::friction_velocity(Real(u), Real(y), Real(kAir), Real(sand * y));
-        const double y_plus = tau * y / kAir;
+        const double tau = wall_law::friction_velocity(Real(u), Real(y), Real(kGas), Real(sand * y));
+        const double y_plus = tau * y / kGas;
         EXPECT_NEAR(tau * double(wall_law::u_plus(Real(y_plus), Real(sand * y_plus))) / u, 1.0, 0.01)
             << u << " " << y << " " << sand << " y+ " << y_plus;
       }
@@ -66,18 +66,18 @@ TEST(WallLaw, TheWallNeverRubsLessThanALaminarLayer) {
     for (const double y : kDistances)
       for (const double k : {0.0, 1e-6, 1e-2, 10.0, 500.0})
         for (const double sand : {0.0, 0.1}) {
-          const double rubs = wall_law::conductance(Real(u), Real(y), Real(kAir), Real(k), Real(sand * y));
-          EXPECT_GE(rubs, kAir / y * (1 - 1e-6)) << u << " " << y << " " << k;
+          const double rubs = wall_law::conductance(Real(u), Real(y), Real(kGas), Real(k), Real(sand * y));
+          EXPECT_GE(rubs, kGas / y * (1 - 1e-6)) << u << " " << y << " " << k;
           EXPECT_TRUE(std::isfinite(rubs));
         }
-  EXPECT_FLOAT_EQ(float(wall_law::conductance(0, Real(1e-3), Real(kAir), 0, 0)), float(kAir / 1e-3));
+  EXPECT_FLOAT_EQ(float(wall_law::conductance(0, Real(1e-3), Real(kGas), 0, 0)), float(kGas / 1e-3));
 }
 
 TEST(WallLaw, TurbulenceInEquilibriumGivesTheFrictionOfTheMeanFlow) {
   const double y = 2e-3, tau = 3.0, k = tau * tau / 0.3;  // C_mu^(1/2) k = u_tau^2
-  const double u = tau * double(wall_law::u_plus(Real(tau * y / kAir), 0));
-  EXPECT_NEAR(wall_law::conductance(Real(u), Real(y), Real(kAir), Real(k), 0) * u / (tau * tau), 1.0, 1e-3);
-  EXPECT_NEAR(wall_law::dissipation(Real(k), Real(y), Real(kAir)) * 0.41 * y / std::pow(tau, 3), 1.0, 1e-3);
+  const double u = tau * double(wall_law::u_plus(Real(tau * y / kGas), 0));
+  EXPECT_NEAR(wall_law::conductance(Real(u), Real(y), Real(kGas), Real(k), 0) * u / (tau * tau), 1.0, 1e-3);
+  EXPECT_NEAR(wall_law::dissipation(Real(k), Real(y), Real(kGas)) * 0.41 * y / std::pow(tau, 3), 1.0, 1e-3);
 }
 
 }  // namespace

@@ -3,13 +3,17 @@
 #include <fmt/format.h>
 
 #include <cstdio>
+#include <filesystem>
 
 #include "simulation/body_checks.hpp"
+#include "validation/validation.hpp"
 
 namespace ejecta {
 
 void add_case_options(CLI::App& command, CaseOptions& options) {
-  command.add_option("CASE", options.path, "Case file (.toml)")->required()->type_name("");
+  command.add_option("CASE", options.path, "Case file (.toml), or the name of a shipped case")
+      ->required()
+      ->type_name("");
   command.add_option("--set", options.overrides, "Change a key: section.key=value; may be repeated")
       ->type_name("KEY=VALUE")
       ->expected(1)
@@ -22,9 +26,18 @@ void add_threads(CLI::App& command, int& threads) {
       ->check(CLI::Range(1, 1024).description(""));
 }
 
+std::string case_file(const std::string& given) {
+  namespace fs = std::filesystem;
+  if (fs::exists(given) || fs::path(given).is_absolute()) return given;
+  for (const fs::path& name : {fs::path(given), fs::path(given + ".toml")})
+    for (const fs::path& folder : {shipped_cases() / "cases", shipped_cases()})
+      if (fs::is_regular_file(folder / name)) return (folder / name).string();
+  return given;
+}
+
 Case load_and_warn(const CaseOptions& options, bool quiet) {
   std::vector<Problem> warnings;
-  Case c = load_checked(options.path, options.overrides, &warnings);
+  Case c = load_checked(case_file(options.path), options.overrides, &warnings);
   if (!quiet)
     for (const Problem& p : warnings) fmt::print(stderr, "{}\n", render(p));
   return c;

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "app/cli/case_options.hpp"
 #include "app/cli/commands.hpp"
 #include "app/cli/input_error.hpp"
 #include "app/exit_code.hpp"
@@ -48,7 +49,7 @@ void add_check(CLI::App& app, Action& action) {
         try {
           std::vector<Problem> warnings;
           std::optional<Scene> scene;
-          const Case c = load_checked(path, o->overrides, &warnings, &scene);
+          const Case c = load_checked(case_file(path), o->overrides, &warnings, &scene);
           if (o->json) list.push_back(check_json(c, *scene, warnings, bandwidth));
           else fmt::print("{}\n", check_report(c, *scene, warnings, bandwidth));
         } catch (const InputError& e) {

@@ -79,7 +79,8 @@ int run_command_line(int argc, const char* const* argv) {
       "  ejecta check my-case.toml      what the run will be\n"
       "  ejecta run my-case.toml        runs it\n",
       "ejecta");
-  app.set_version_flag("--version", std::string(output::version()));
+  app.set_version_flag("--version", fmt::format("{} ({}, kernels for {})", output::version(),
+                                                output::git_revision(), output::kernels()));
   app.require_subcommand(1);
   app.get_formatter()->label("SUBCOMMAND", "COMMAND");
   app.get_formatter()->label("Positionals", "Arguments");

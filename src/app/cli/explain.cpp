@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "app/cli/commands.hpp"
+#include "app/cli/documents.hpp"
 #include "app/exit_code.hpp"
 #include "base/text.hpp"
 #include "case/template.hpp"
@@ -16,7 +17,7 @@ namespace ejecta {
 void add_explain(CLI::App& app, Action& action) {
   struct Options {
     std::vector<std::string> topic;
-    bool markdown = false, schema = false;
+    bool markdown = false, schema = false, man = false, completion = false;
   };
   CLI::App* command =
       app.add_subcommand("explain", "What the keys of a case file mean: unit, default, range, source");
@@ -25,13 +26,18 @@ void add_explain(CLI::App& app, Action& action) {
       ->type_name("");
   command->add_flag("--markdown", o->markdown, "The whole reference page");
   command->add_flag("--json-schema", o->schema, "A JSON schema for editors");
+  command->add_flag("--man", o->man, "The man page, e.g. ejecta explain --man | man -l -");
+  command->add_flag("--completion", o->completion,
+                    "Completion for bash: source <(ejecta explain --completion)");
   command->footer(
       "Examples:\n  ejecta explain valve.rise_time\n  ejecta explain splitter\n  ejecta explain turbulence");
-  command->callback([o, &action] {
-    action = [o] {
-      fmt::print("{}", o->markdown ? reference_page()
-                       : o->schema ? json_schema()
-                                   : explain(joined(o->topic, " ")));
+  command->callback([o, &app, &action] {
+    action = [o, &app] {
+      fmt::print("{}", o->man          ? man_page(app)
+                       : o->completion ? bash_completion(app)
+                       : o->markdown   ? reference_page()
+                       : o->schema     ? json_schema()
+                                       : explain(joined(o->topic, " ")));
       return int{exit_done};
     };
   });

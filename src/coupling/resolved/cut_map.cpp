@@ -19,7 +19,7 @@ constexpr double kSmoothTurn = 0.3, kSharpTurn = 0.6;
 /// To what part of a cell points of the surface are known.
 constexpr double kExact = 1e-3;
 /// Open up to round-off.
-constexpr float kNothing = 1e-5f;
+constexpr float kOpenRoundOff = 1e-5f;
 
 /// The signed distance changes by no more than the way moved: calls measure(m) for the points of a row that
 /// may lie within `band` of the surface, and gives the others a value beyond it with the right sign.
@@ -294,7 +294,7 @@ void CutMap::record(const Region& r, int region) {
             c.tip[(d + 2) % 3] += tip.sharp * tip.y;
           }
         }
-        if (most < kNothing) continue;
+        if (most < kOpenRoundOff) continue;
         for (float& x : c.tip) x = tips > 0 ? x / tips : 0.5f;
         c.distance = r.distance[r.at(c.i, c.j, c.k)];
         list.push_back(c);
