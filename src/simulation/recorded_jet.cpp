@@ -14,7 +14,7 @@ namespace ejecta {
 namespace {
 
 /// Probes look this often, s: a thousandth of the paper's transducer's response, and many steps of the flow.
-constexpr double kLook = 1e-6;
+constexpr double kProbeLook = 1e-6;
 constexpr double kShocksEnd =
     30e-3;  ///< m: from here on the compressible and the incompressible jet are compared
 constexpr double kMomentumLook = 5e-6;  ///< s, between two looks at the momentum
@@ -90,7 +90,7 @@ void RecordedJet::advance(const Step& step) {
   ++record_.calls;
   orifice_.advance(jet_, step.dt);
   not_yet_observed_ += step.dt;
-  if (not_yet_observed_ >= kLook) observe();
+  if (not_yet_observed_ >= kProbeLook) observe();
   profile_.advance(jet_);
   if (!at_full_ && jet_.time() >= full_at_) look_at_full();
 }

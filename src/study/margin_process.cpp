@@ -18,17 +18,17 @@ constexpr double kLeastSquare = 1e-12;
 constexpr double kJitter = 1e-8;
 
 /// A parameter's range before any run.
-struct Range {
+struct ParameterRange {
   double low, high;
 };
-constexpr Range kLogLength{-3.0, 0.7};       // 0.05 to 2 windows
-constexpr Range kLogNoise{-14.0, -1.0};      // 1e-6 to 0.37 of the variance
-constexpr Range kKinked{0.0, 1.0};           // above a half: kinked
-constexpr Range kLogClip{-1.0, 1.0};         // 0.37 to 2.7 times the usual margin
-constexpr Range kScale{0.5, 1.5};            // fine over coarse
-constexpr Range kLogDiscrepancy{-9.0, 0.0};  // 1e-4 to 1 of the variance
+constexpr ParameterRange kLogLength{-3.0, 0.7};       // 0.05 to 2 windows
+constexpr ParameterRange kLogNoise{-14.0, -1.0};      // 1e-6 to 0.37 of the variance
+constexpr ParameterRange kKinked{0.0, 1.0};           // above a half: kinked
+constexpr ParameterRange kLogClip{-1.0, 1.0};         // 0.37 to 2.7 times the usual margin
+constexpr ParameterRange kScale{0.5, 1.5};            // fine over coarse
+constexpr ParameterRange kLogDiscrepancy{-9.0, 0.0};  // 1e-4 to 1 of the variance
 constexpr int kParameters = 8, kParametersOfOneFidelity = 6;
-constexpr std::array<Range, kParameters> kRanges{kLogLength, kLogLength, kLogNoise, kKinked,
+constexpr std::array<ParameterRange, kParameters> kRanges{kLogLength, kLogLength, kLogNoise, kKinked,
                                                  kLogClip,   kLogClip,   kScale,    kLogDiscrepancy};
 
 /// Rounds and points of the search for parameters. Twice as many points change areas by less than their
