@@ -153,13 +153,18 @@ int map_case(const StudyOptions& o) {
     note(map_sentence(result));
   };
   workers.note = note;
-  if (make_map(base, store, workers) == MapEnd::stopped) {
+  const MapEnd end = make_map(base, store, workers);
+  if (end == MapEnd::stopped) {
     if (!o.print_commands) fmt::print(stderr, "stopped; go on with the same command\n");
     return exit_stopped;
   }
   if (!o.quiet)
     fmt::print("results: {}\nreport:  {}\n", (directory / "result.json").string(),
                (directory / "report.html").string());
+  if (end == MapEnd::contradicted) {
+    fmt::print(stderr, "error: the map contradicts some of its runs: see \"contradictions\" in the report\n");
+    return exit_failure;
+  }
   return exit_done;
 }
 

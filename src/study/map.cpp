@@ -161,7 +161,8 @@ class MapMaker {
       if (plate.x != 0.0 || plate.z != 0.0) plates.push_back({plate, outline_for(plate)});
     if (settings_.symmetric && !symmetry_across(base_, mapped_body(base_)).sure) mirror_ = check_mirror();
     show(finder_.outline(), plates, end == MapEnd::finished ? "finished" : "runs used up");
-    return end;
+    const bool sound = finder_.contradictions().empty() && !(mirror_ && mirror_->contradicts());
+    return sound ? end : MapEnd::contradicted;
   }
 
   void show(const Outline& outline, const std::vector<MapPlate>& plates, const char* state) {

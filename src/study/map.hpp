@@ -22,7 +22,8 @@ struct MapWorkers {
   Note note{};
 };
 
-enum class MapEnd { finished, runs_used_up, stopped };
+/// contradicted: at its end, but some run stands against the others, or a claimed symmetry against its check.
+enum class MapEnd { finished, runs_used_up, contradicted, stopped };
 
 /// Finds the places around the jet from which the body is ejected ([map]). Which runs are made depends on
 /// what the earlier ones gave, in the order in which they were asked for, and on nothing else: a map that is

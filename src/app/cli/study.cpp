@@ -71,6 +71,8 @@ void add_study(CLI::App& app, Action& action) {
   one->callback([task, &action] {
     action = [task] { return study_tasks(task->directory, task->indices, task->threads); };
   });
+  for (CLI::App* one_of : command->get_subcommands([](const CLI::App*) { return true; }))
+    one_of->group("Commands");
   command->footer(
       "A study that was stopped, or killed, goes on when the same command is given again.\n\n"
       "Examples:\n  ejecta study pressures.toml\n  ejecta study status pressures.study\n"
