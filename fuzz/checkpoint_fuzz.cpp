@@ -157,10 +157,10 @@ bool read(const std::filesystem::path& path) {
 }
 
 /// A real file: HDF5 opens nothing without a name.
-struct File {
+struct CheckpointFile {
   std::filesystem::path path =
       std::filesystem::temp_directory_path() / fmt::format("checkpoint-{}.fuzz", ::getpid());
-  ~File() { std::filesystem::remove(path); }
+  ~CheckpointFile() { std::filesystem::remove(path); }
   void hold(std::initializer_list<std::span<const std::uint8_t>> parts) const {
     std::ofstream out(path, std::ios::binary | std::ios::trunc);
     for (const auto& part : parts)
@@ -172,7 +172,7 @@ struct File {
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  static const File file;
+  static const CheckpointFile file;
   file.hold({{data, size}});
   read(file.path);
 

@@ -13,7 +13,7 @@ namespace ejecta {
 namespace {
 
 constexpr int kMaxSyntaxErrors = 20;
-constexpr int kMaxNesting = 32, kMaxDots = 200;  // toml11 recurses
+constexpr int kMaxBrackets = 32, kMaxDots = 200;  // toml11 recurses
 
 Place place_of(const toml::value& v, const std::shared_ptr<const Source>& source) {
   Place place{source, 0, 0};
@@ -71,7 +71,7 @@ bool nested_too_deeply(const std::string& text, std::size_t& where) {
     else if ((c == ']' || c == '}') && brackets > 0) --brackets;
     if (c == '.') ++dots;
     else if (c == ',' || c == '=' || c == '\n' || c == ']') dots = 0;
-    if (brackets > kMaxNesting || dots > kMaxDots) return true;
+    if (brackets > kMaxBrackets || dots > kMaxDots) return true;
   }
   return false;
 }

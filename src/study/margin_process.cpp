@@ -29,7 +29,7 @@ constexpr ParameterRange kScale{0.5, 1.5};            // fine over coarse
 constexpr ParameterRange kLogDiscrepancy{-9.0, 0.0};  // 1e-4 to 1 of the variance
 constexpr int kParameters = 8, kParametersOfOneFidelity = 6;
 constexpr std::array<ParameterRange, kParameters> kRanges{kLogLength, kLogLength, kLogNoise, kKinked,
-                                                 kLogClip,   kLogClip,   kScale,    kLogDiscrepancy};
+                                                          kLogClip,   kLogClip,   kScale,    kLogDiscrepancy};
 
 /// Rounds and points of the search for parameters. Twice as many points change areas by less than their
 /// error.

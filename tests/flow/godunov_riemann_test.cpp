@@ -12,19 +12,19 @@ using test::make_tube;
 using test::RiemannState;
 using test::Tube;
 
-struct Problem {
+struct TubeProblem {
   const char* name;
   RiemannState left, right;
   double middle, time;
 };
 
-const Problem kProblems[] = {{"sod", {1, 0, 1}, {0.125, 0, 0.1}, 0.5, 0.2},
-                             {"toro1", {1, 0.75, 1}, {0.125, 0, 0.1}, 0.3, 0.2},
-                             {"toro2", {1, -2, 0.4}, {1, 2, 0.4}, 0.5, 0.15},
-                             {"toro3", {1, 0, 1000}, {1, 0, 0.01}, 0.5, 0.012},
-                             {"toro5", {1, -19.59745, 1000}, {1, -19.59745, 0.01}, 0.8, 0.012}};
+const TubeProblem kProblems[] = {{"sod", {1, 0, 1}, {0.125, 0, 0.1}, 0.5, 0.2},
+                                 {"toro1", {1, 0.75, 1}, {0.125, 0, 0.1}, 0.3, 0.2},
+                                 {"toro2", {1, -2, 0.4}, {1, 2, 0.4}, 0.5, 0.15},
+                                 {"toro3", {1, 0, 1000}, {1, 0, 0.01}, 0.5, 0.012},
+                                 {"toro5", {1, -19.59745, 1000}, {1, -19.59745, 0.01}, 0.8, 0.012}};
 
-std::unique_ptr<Tube> solve(const Problem& q, int axis, int cells) {
+std::unique_ptr<Tube> solve(const TubeProblem& q, int axis, int cells) {
   auto tube = make_tube(axis, cells);
   for (int f = 0; f < 6; ++f) {
     const RiemannState& s = f % 2 ? q.right : q.left;
@@ -48,7 +48,7 @@ GasState cell(const Tube& t, int axis, int n) {
   return t.solver.at(axis == 0 ? n : 0, axis == 1 ? n : 0, axis == 2 ? n : 0);
 }
 
-double error_of_density(const Problem& q, int cells) {
+double error_of_density(const TubeProblem& q, int cells) {
   const auto tube = solve(q, 0, cells);
   const ExactRiemann exact(q.left, q.right);
   double sum = 0.0;
@@ -71,7 +71,7 @@ class RiemannProblem : public testing::TestWithParam<int> {};
 
 // Star states of the cells in the middle of each star region, 200 cells.
 TEST_P(RiemannProblem, StarValuesWithinHalfAPercent) {
-  const Problem& q = kProblems[GetParam()];
+  const TubeProblem& q = kProblems[GetParam()];
   const ExactRiemann exact(q.left, q.right);
   const int cells = 200;
   const auto tube = solve(q, 0, cells);
