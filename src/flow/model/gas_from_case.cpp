@@ -180,7 +180,11 @@ void drive(GasFlow& flow, const std::vector<DrivenInlet>& inlets, const Supply& 
     Condition& condition = flow.boundaries().condition(inlet.handle);
     condition.total_pressure = supply.total_pressure;
     condition.total_temperature = supply.total_temperature;
-    if (supply.fluctuation <= 0.0) continue;
+    if (supply.fluctuation <= 0.0) {
+      condition.state.k = inlet.still_k;
+      condition.state.e = inlet.still_e;
+      continue;
+    }
     condition.state.k = 1.5 * supply.fluctuation * supply.fluctuation;
     condition.state.e = epsilon_of_pipe(condition.state.k, 2.0 * inlet.radius);
     if (omega) condition.state.e = omega_of(condition.state.k, condition.state.e);
@@ -208,7 +212,8 @@ std::unique_ptr<GasFlow> solver_from_case(const Case& c, const Grid& grid, std::
       const Condition condition =
           condition_of(c, opened, p.state, p.total_pressure, p.total_temperature, p.centre);
       const int disc = solver->boundaries().add_disc(face, p.centre, p.radius, condition);
-      if (p.type == BoundaryType::jet) inlets.push_back({face, disc, p.centre, p.radius});
+      if (p.type == BoundaryType::jet)
+        inlets.push_back({face, disc, p.centre, p.radius, condition.state.k, condition.state.e});
     }
   }
   for (int k = 0; k < grid.nz(); ++k)

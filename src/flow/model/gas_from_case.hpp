@@ -43,7 +43,8 @@ struct DrivenInlet {
   int face = 0;
   int handle = 0;
   Vec3 centre{0, 0, 0};
-  double radius = 0.0;  ///< m
+  double radius = 0.0;                  ///< m
+  double still_k = 0.0, still_e = 0.0;  ///< turbulence of what it draws in while it is shut
 };
 
 /// Opens the orifices to their supply at this time.
