@@ -10,8 +10,7 @@ enum ExitCode : int {
   exit_diverged = 3,    ///< the last good checkpoint is kept
   exit_stopped = 4,     ///< by a signal or a time limit; `--resume` continues
   exit_validation = 5,  ///< a validation case failed
-  exit_undecided =
-      6  ///< the run ended before every body had its verdict; `--resume` with a later end goes on
+  exit_undecided = 6    ///< ended before every body had its verdict; `--resume` with a later end goes on
 };
 
 }  // namespace ejecta

@@ -19,6 +19,7 @@
 #include "output/run_directory.hpp"
 #include "output/verdict.hpp"
 #include "simulation/coupled_model.hpp"
+#include "simulation/jet_sweep.hpp"
 #include "simulation/run.hpp"
 
 namespace ejecta {
@@ -112,8 +113,8 @@ Result watched_run(const Case& c, const RunOptions& options, const RunFiles& fil
                               if (!signals) signals.emplace();
                               progress.observe(m);
                             },
-                        .stop = [&] { return signals->stop_requested(); },
-                        .keep = [&] { return signals->take_checkpoint_request(); },
+                        .stop = [&] { return signals && signals->stop_requested(); },
+                        .keep = [&] { return signals && signals->take_checkpoint_request(); },
                         .note = options.quiet ? Note{} : Note(print_note)};
   try {
     const Result result = runner(c, context);
@@ -162,6 +163,24 @@ int run_into_directory(const std::string& command, const Case& c, RunOptions opt
   return exit_code_of(result.end);
 }
 
+int sweep(const Case& c, RunOptions options) {
+  const std::string typed = command_line_of("jet --sweep", c, options);
+  const auto directory =
+      options.out.empty() ? output::RunDirectory::default_path(c.path) : std::filesystem::path(options.out);
+  const SignalWatch signals;
+  const auto result =
+      sweep_jet(c, {.files = RunFiles{directory, options.force, false, typed, typed, options.overrides},
+                    .threads = options.threads,
+                    .stop = [&] { return signals.stop_requested(); },
+                    .note = options.quiet ? Note{} : Note(print_note)});
+  if (!result) {
+    print_note("stopped: a sweep keeps nothing before its end");
+    return exit_stopped;
+  }
+  if (!options.quiet) fmt::print("{}\n", result->dump(2));
+  return exit_done;
+}
+
 }  // namespace
 
 int plan_case(const Case& c, bool quiet) {
@@ -193,7 +212,7 @@ int jet_case(const Case& c, const RunOptions& options) {
   const bool box = c.flow.solver != FlowSolver::compressible && !c.jet.source_case.empty();
   const Case jet = box ? computed_jet_case(c) : c;
   const double kept_at = box ? jet_height(c) : kBoxHeight;
-  if (options.sweep) return sweep_jet(jet, options);
+  if (options.sweep) return sweep(jet, options);
   return run_into_directory("jet", jet, options, [kept_at](const Case& of, const Context& context) {
     return run_jet(of, kept_at, context);
   });

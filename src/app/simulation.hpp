@@ -33,8 +33,4 @@ std::optional<nlohmann::ordered_json> result_of(const Case& c, const std::filesy
                                                 int threads);
 /// Computes only the jet of a case and stores it. Returns an ExitCode.
 int jet_case(const Case& c, const RunOptions& options);
-/// `ejecta jet CASE --sweep`: settled compressible jets of jet.sweep_pressures and incompressible ones of
-/// jet.sweep_velocities, and for every pressure the velocity at which the incompressible jet carries the same
-/// momentum, and reads the same total pressure, at the stand-off. Returns an ExitCode.
-int sweep_jet(const Case& c, const RunOptions& options);
 }  // namespace ejecta

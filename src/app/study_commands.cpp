@@ -14,6 +14,7 @@
 #include "output/output_file.hpp"
 #include "output/report.hpp"
 #include "simulation/body_checks.hpp"
+#include "simulation/forecast.hpp"
 #include "study/local.hpp"
 #include "study/map.hpp"
 #include "study/map_result.hpp"

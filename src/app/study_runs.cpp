@@ -1,25 +1,10 @@
 #include "app/study_runs.hpp"
 
-#include <algorithm>
-#include <fstream>
-#include <thread>
-
 #include "base/error.hpp"
-#include "simulation/forecast.hpp"
 #include "simulation/run.hpp"
 
 namespace ejecta {
 namespace {
-
-/// Bytes that programs may still take without swapping.
-double available_memory() {
-  std::ifstream info("/proc/meminfo");
-  std::string name;
-  double kilobytes = 0.0;
-  for (std::string rest; info >> name >> kilobytes && std::getline(info, rest);)
-    if (name == "MemAvailable:") return 1024.0 * kilobytes;
-  return 1e300;
-}
 
 bool has_checkpoint(const std::filesystem::path& directory) {
   std::error_code none;
@@ -63,12 +48,6 @@ RunAnswer run_for_study(const Case& c, const RunRequest& request) {
   context.files->resume = false;
   context.files->overwrite = true;
   return answer_of(run(c, context));
-}
-
-int runs_side_by_side(const Case& c) {
-  const double cores = std::max(1u, std::thread::hardware_concurrency());
-  const double fitting = available_memory() / std::max(1.0, forecast(c).memory);
-  return static_cast<int>(std::clamp(fitting, 1.0, cores));
 }
 
 }  // namespace ejecta

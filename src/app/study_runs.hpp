@@ -22,8 +22,6 @@ struct StudyOptions {
 
 /// One run as a study asks for it: goes on from its last checkpoint, or takes the result that is there.
 RunAnswer run_for_study(const Case& c, const RunRequest& request);
-/// How many such runs this machine can do side by side: cores and free memory.
-int runs_side_by_side(const Case& c);
 
 // The commands. Each returns an ExitCode.
 int study_case(const StudyOptions& options);

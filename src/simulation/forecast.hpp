@@ -31,6 +31,9 @@ double expected_seconds(const Case& c, const Forecast& f, double bandwidth);
 /// Measured in about a tenth of a second, bytes/s.
 double measured_bandwidth();
 
+/// How many such runs this machine can do side by side: cores and free memory.
+int runs_side_by_side(const Case& c);
+
 /// All of it as the text of `ejecta check`, with the warnings of the case; `scene`: of the case, see
 /// scene_of.
 std::string check_report(const Case& c, const Scene& scene, const std::vector<Problem>& warnings,

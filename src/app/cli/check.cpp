@@ -7,7 +7,6 @@
 
 #include "app/cli/case_options.hpp"
 #include "app/cli/commands.hpp"
-#include "app/cli/input_error.hpp"
 #include "app/exit_code.hpp"
 #include "simulation/body_checks.hpp"
 #include "simulation/forecast.hpp"

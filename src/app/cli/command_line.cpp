@@ -7,7 +7,6 @@
 #include <string_view>
 
 #include "app/cli/commands.hpp"
-#include "app/cli/input_error.hpp"
 #include "app/exit_code.hpp"
 #include "base/text.hpp"
 #include "output/build_info.hpp"

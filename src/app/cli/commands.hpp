@@ -2,6 +2,8 @@
 #include <CLI/CLI.hpp>
 #include <functional>
 
+#include "base/error.hpp"
+
 /// The commands of `ejecta`. Each function adds one command with its options, help and an example; when the
 /// command is given, `action` becomes what it does and returns an ExitCode.
 namespace ejecta {
@@ -21,6 +23,8 @@ void add_cache(CLI::App& app, Action& action);
 void add_study(CLI::App& app, Action& action);
 void add_map(CLI::App& app, Action& action);
 
+/// Tells the user what is wrong with the input.
+void print_input_error(const InputError& e);
 /// The whole program: parses the command line, does it and turns exceptions into exit codes.
 int run_command_line(int argc, const char* const* argv);
 

@@ -1,18 +1,18 @@
+#include "simulation/jet_sweep.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
-#include <iostream>
 
-#include "app/exit_code.hpp"
-#include "app/simulation.hpp"
 #include "base/error.hpp"
 #include "base/parallel.hpp"
 #include "base/stopwatch.hpp"
-#include "case/write.hpp"
+#include "base/thread_budget.hpp"
+#include "case/load.hpp"
 #include "jet/settled.hpp"
 #include "output/report.hpp"
 #include "output/run_directory.hpp"
+#include "simulation/archive.hpp"
 #include "simulation/jet_figures.hpp"
 
 namespace ejecta {
@@ -20,7 +20,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-ordered_json entry(const SettledJet& jet) {
+ordered_json settled_entry(const SettledJet& jet) {
   return {{"thrust_N", jet.thrust},
           {"momentum_N", jet.momentum_at_stand_off},
           {"velocity_m_s", jet.at_stand_off.velocity.z()},
@@ -48,7 +48,8 @@ output::Figure velocities_figure(const std::vector<double>& gauge, const ordered
 
 }  // namespace
 
-int sweep_jet(const Case& original, const RunOptions& options) {
+std::optional<ordered_json> sweep_jet(const Case& original, const Context& context) {
+  const ThreadBudget budget(context.threads);
   Case c = original;
   std::sort(c.jet.sweep_pressures.begin(), c.jet.sweep_pressures.end());
   std::sort(c.jet.sweep_velocities.begin(), c.jet.sweep_velocities.end());
@@ -56,29 +57,20 @@ int sweep_jet(const Case& original, const RunOptions& options) {
     throw InputError(
         "a sweep needs jet.sweep_pressures or jet.sweep_velocities, e.g. --set "
         "jet.sweep_pressures='[\"400 kPa gauge\", \"700 kPa gauge\"]'");
-  const auto directory = output::RunDirectory::create(
-      options.out.empty() ? output::RunDirectory::default_path(c.path) : std::filesystem::path(options.out),
-      options.force);
-  const output::Provenance provenance{.command = command_line_of("jet --sweep", c, options),
-                                      .case_path = c.path,
-                                      .input = write_case(c),
-                                      .threads = thread_count(),
-                                      .overrides = options.overrides};
-  directory.write_case(provenance.input);
-  directory.write_manifest(output::make_manifest(provenance));
-  const auto note = [&](const std::string& line) {
-    if (!options.quiet) std::cerr << line << std::endl;
-  };
+  if (context.files)
+    output::RunDirectory::require_creatable(context.files->directory, context.files->overwrite);
   const double height = c.launch.stand_off, start = wall_seconds();
   output::Figure lines = centreline_figure("Total pressure on the axis");
 
   ordered_json slow = ordered_json::array(), fast = ordered_json::array();
   std::vector<double> momenta, totals, gauges;
   for (const double velocity : c.jet.sweep_velocities) {
-    const SettledJet jet = *settled_jet(incompressible_jet(c, velocity), height, note);
+    const auto settled = settled_jet(incompressible_jet(c, velocity), height, context.note, context.stop);
+    if (!settled) return std::nullopt;
+    const SettledJet& jet = *settled;
     momenta.push_back(jet.momentum_at_stand_off);
     totals.push_back(jet.at_stand_off.total_gauge);
-    slow.push_back(entry(jet));
+    slow.push_back(settled_entry(jet));
     slow.back()["inlet_velocity_m_s"] = velocity;
     lines.series.push_back(centreline_series(fmt::format("incompressible, {:.0f} m/s", velocity), jet.line));
     lines.series.back().dashed = true;
@@ -86,9 +78,11 @@ int sweep_jet(const Case& original, const RunOptions& options) {
   for (const double supply : c.jet.sweep_pressures) {
     Case at = c;
     at.valve.supply_pressure = supply;
-    const SettledJet jet = *settled_jet(at, height, note);
+    const auto settled = settled_jet(at, height, context.note, context.stop);
+    if (!settled) return std::nullopt;
+    const SettledJet& jet = *settled;
     gauges.push_back(supply - c.environment.pressure);
-    ordered_json e = entry(jet);
+    ordered_json e = settled_entry(jet);
     e["supply_gauge_Pa"] = gauges.back();
     const ShockStructure shocks = shock_structure(jet.line, Gas{c.fluid.gamma, c.fluid.gas_constant});
     e["mach_disk_m"] = shocks.mach_disk;
@@ -105,11 +99,6 @@ int sweep_jet(const Case& original, const RunOptions& options) {
         centreline_series(fmt::format("compressible, {:.0f} kPa", 1e-3 * gauges.back()), jet.line));
   }
 
-  output::Figures figures;
-  if (!fast.empty()) figures.add(velocities_figure(gauges, fast));
-  figures.add(beyond(lines, 1e3 * far_field_from(c), "Total pressure on the axis, far field"));
-  figures.add(std::move(lines));
-  figures.write(directory.figures());
   const ordered_json result{{"title", c.run.title},
                             {"outcome", "jets swept"},
                             {"stand_off_m", height},
@@ -117,10 +106,25 @@ int sweep_jet(const Case& original, const RunOptions& options) {
                             {"wall_time_s", wall_seconds() - start},
                             {"compressible", fast},
                             {"incompressible", slow}};
+  if (!context.files) return result;
+  const RunFiles& files = *context.files;
+  const auto directory = output::RunDirectory::create(files.directory, files.overwrite);
+  const output::Provenance provenance{.command = files.command,
+                                      .case_path = c.path,
+                                      .input = input_of(c),
+                                      .threads = thread_count(),
+                                      .overrides = files.overrides,
+                                      .files = files_of(c)};
+  directory.write_case(provenance.input);
+  directory.write_manifest(output::make_manifest(provenance));
+  output::Figures figures;
+  if (!fast.empty()) figures.add(velocities_figure(gauges, fast));
+  figures.add(beyond(lines, 1e3 * far_field_from(c), "Total pressure on the axis, far field"));
+  figures.add(std::move(lines));
+  figures.write(directory.figures());
   directory.write_result(result);
   if (c.output.report) output::write_report(directory.path());
-  if (!options.quiet) fmt::print("{}\n", result.dump(2));
-  return exit_done;
+  return result;
 }
 
 }  // namespace ejecta
