@@ -25,7 +25,7 @@
 namespace ejecta {
 namespace {
 
-using Runner = std::function<Result(const Case&, const Context&)>;
+using RunOfCase = std::function<Result(const Case&, const Context&)>;
 
 void print_note(const std::string& line) { fmt::print(stderr, "{}\n", line); }
 
@@ -103,7 +103,7 @@ int exit_code_of(RunEnd end) {
 }
 
 /// The run with its progress on the terminal, until its end or a signal.
-Result watched_run(const Case& c, const RunOptions& options, const RunFiles& files, const Runner& runner,
+Result watched_run(const Case& c, const RunOptions& options, const RunFiles& files, const RunOfCase& runner,
                    ProgressOfRun& progress) {
   std::optional<SignalWatch> signals;  // until the first step a signal ends the program at once
   const Context context{.files = files,
@@ -130,7 +130,8 @@ Result watched_run(const Case& c, const RunOptions& options, const RunFiles& fil
 }
 
 /// `command`: that the user gave, "run" or "jet".
-int run_into_directory(const std::string& command, const Case& c, RunOptions options, const Runner& runner) {
+int run_into_directory(const std::string& command, const Case& c, RunOptions options,
+                       const RunOfCase& runner) {
   const auto directory =
       options.out.empty() ? output::RunDirectory::default_path(c.path) : std::filesystem::path(options.out);
   if (options.resume)
@@ -199,7 +200,7 @@ std::optional<nlohmann::ordered_json> result_of(const Case& c, const std::filesy
   const RunOptions options{.out = directory.string(), .threads = threads, .force = true, .quiet = true};
   const std::string command = command_line_of("run", c, options);
   ProgressOfRun progress(c, options, directory);
-  const Runner any = [](const Case& of, const Context& context) {
+  const RunOfCase any = [](const Case& of, const Context& context) {
     return is_jet_case(of) ? run_jet(of, kBoxHeight, context) : run(of, context);
   };
   const Result r = watched_run(c, options, {directory, true, false, command, command}, any, progress);
