@@ -90,6 +90,11 @@ class ProgressOfRun {
   output::ProgressState last_;
 };
 
+std::filesystem::path directory_of(const Case& c, const RunOptions& options) {
+  return options.out.empty() ? output::RunDirectory::default_path(c.path)
+                             : std::filesystem::path(options.out);
+}
+
 int exit_code_of(RunEnd end) {
   switch (end) {
     case RunEnd::decided:
@@ -132,8 +137,7 @@ Result watched_run(const Case& c, const RunOptions& options, const RunFiles& fil
 /// `command`: that the user gave, "run" or "jet".
 int run_into_directory(const std::string& command, const Case& c, RunOptions options,
                        const RunOfCase& runner) {
-  const auto directory =
-      options.out.empty() ? output::RunDirectory::default_path(c.path) : std::filesystem::path(options.out);
+  const auto directory = directory_of(c, options);
   if (options.resume)
     if (const auto result = finished_run(c, directory)) {
       if (!options.quiet) {
@@ -164,10 +168,9 @@ int run_into_directory(const std::string& command, const Case& c, RunOptions opt
   return exit_code_of(result.end);
 }
 
-int sweep(const Case& c, RunOptions options) {
+int sweep(const Case& c, const RunOptions& options) {
   const std::string typed = command_line_of("jet --sweep", c, options);
-  const auto directory =
-      options.out.empty() ? output::RunDirectory::default_path(c.path) : std::filesystem::path(options.out);
+  const auto directory = directory_of(c, options);
   const SignalWatch signals;
   const auto result =
       sweep_jet(c, {.files = RunFiles{directory, options.force, false, typed, typed, options.overrides},

@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <optional>
@@ -69,11 +68,16 @@ void write_collected(const TaskStore& store) {
   output::write_study_report("study", result, store.path() / "report.html");
 }
 
-void print_commands(const TaskStore& store, const std::vector<std::size_t>& tasks) {
+/// True where nothing is left to run.
+bool print_commands(const TaskStore& store, std::span<const std::size_t> tasks) {
   const std::vector<TaskState> states = store.states();
-  for (const std::size_t task : tasks)
-    if (states[task] == TaskState::waiting || states[task] == TaskState::crashed)
-      fmt::print("ejecta study run-task {} {}\n", store.path().string(), task);
+  bool finished = true;
+  for (const std::size_t task : tasks) {
+    const bool open = states[task] == TaskState::waiting || states[task] == TaskState::crashed;
+    if (open) fmt::print("ejecta study run-task {} {}\n", store.path().string(), task);
+    finished = finished && !open && states[task] != TaskState::running;
+  }
+  return finished;
 }
 
 }  // namespace
@@ -138,14 +142,7 @@ int map_case(const StudyOptions& o) {
   };
   MapWorkers workers;
   workers.run = [&](const TaskStore& tasks, std::span<const std::size_t> which) {
-    if (o.print_commands) {
-      print_commands(tasks, {which.begin(), which.end()});
-      const std::vector<TaskState> states = tasks.states();
-      return std::none_of(which.begin(), which.end(), [&](std::size_t task) {
-        return states[task] == TaskState::waiting || states[task] == TaskState::running ||
-               states[task] == TaskState::crashed;
-      });
-    }
+    if (o.print_commands) return print_commands(tasks, which);
     return work(o, tasks, which, at_once, signals, {});
   };
   workers.further = all_checks();

@@ -9,6 +9,11 @@ inline double wall_seconds() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
+/// By the clock that files and other machines go by, s.
+inline double seconds_since_1970() {
+  return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
+}
+
 /// Adds the time of its scope to `total`, s.
 class ScopedTimer {
  public:

@@ -208,9 +208,7 @@ Json CoupledModel::result(double time, std::int64_t steps, double wall_time,
   }
   add_spacing(m.particles(), r);
   add_errors(m, time, r);
-  for (const OperatorTime& op : operators)
-    r["operators"].push_back(
-        {{"name", op.name}, {"equation", op.equation}, {"seconds", op.seconds}, {"calls", op.calls}});
+  if (!operators.empty()) r["operators"] = operators_json(operators);
   for (const auto& a : assumptions(c))
     r["assumptions"].push_back({{"what", a.what}, {"value", a.value}, {"reason", a.reason}, {"key", a.key}});
   return r;

@@ -12,4 +12,12 @@ const std::vector<double>& numbers_of(const StateNumbers& numbers, const std::st
   return at->second;
 }
 
+nlohmann::ordered_json operators_json(std::span<const OperatorTime> operators) {
+  auto list = nlohmann::ordered_json::array();
+  for (const OperatorTime& op : operators)
+    list.push_back(
+        {{"name", op.name}, {"equation", op.equation}, {"seconds", op.seconds}, {"calls", op.calls}});
+  return list;
+}
+
 }  // namespace ejecta

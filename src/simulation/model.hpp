@@ -20,6 +20,9 @@ using StateNumbers = std::map<std::string, std::vector<double>>;
 /// Throws Error where there are none of that name.
 const std::vector<double>& numbers_of(const StateNumbers& numbers, const std::string& name);
 
+/// As result.json lists them.
+nlohmann::ordered_json operators_json(std::span<const OperatorTime> operators);
+
 /// What a run advances: a box with bodies in its air, or a jet from its nozzle. The loop knows no more of it.
 class Model {
  public:

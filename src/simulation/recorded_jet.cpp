@@ -233,9 +233,7 @@ nlohmann::ordered_json RecordedJet::result(double time, std::int64_t steps, doub
   r["probes"] = nlohmann::ordered_json::array();
   for (const JetProbe& p : probes_) r["probes"].push_back(p.summary());
   r["stored_profile"] = jet_file(c, profile_.profile().height()).string();
-  for (const OperatorTime& op : operators)
-    r["operators"].push_back(
-        {{"name", op.name}, {"equation", op.equation}, {"seconds", op.seconds}, {"calls", op.calls}});
+  if (!operators.empty()) r["operators"] = operators_json(operators);
   return r;
 }
 

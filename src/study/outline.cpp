@@ -413,10 +413,9 @@ std::vector<Proposal> OutlineFinder::ask(int count) {
     std::vector<bool> allowed(static_cast<std::size_t>(options.size()), true);
     if (two) {
       const int pairs = std::min(kPairs, settings_.max_fine);
-      const bool more_fine =
-          asked(Fidelity::fine)<settings_.max_fine, alone = asked(Fidelity::fine) >= kPairs,
-                                room_for_coarse = settings_.max_runs - all_asked()>
-              pairs - asked(Fidelity::fine);
+      const int fine = asked(Fidelity::fine), left = settings_.max_runs - all_asked();
+      const bool more_fine = (fine < settings_.max_fine), alone = (fine >= kPairs);
+      const bool room_for_coarse = (left > pairs - fine);
       for (int n = 0; n < raster.nodes(); ++n) {
         allowed[static_cast<std::size_t>(n)] = more_fine && alone;
         if (!room_for_coarse) allowed[static_cast<std::size_t>(n + raster.nodes())] = false;

@@ -4,12 +4,12 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
 #include <set>
 
 #include "base/error.hpp"
 #include "base/sha256.hpp"
+#include "base/stopwatch.hpp"
 #include "case/find_key.hpp"
 #include "case/node_path.hpp"
 #include "case/override.hpp"
@@ -340,10 +340,6 @@ class Setup {
   std::vector<Variable> variables_;
   std::vector<Problem> problems_;
 };
-
-double seconds_since_1970() {
-  return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
-}
 
 std::string csv_field(const Json& value) {
   std::string text = value.is_null() ? "" : value.is_string() ? value.get<std::string>() : value.dump();

@@ -9,7 +9,6 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <chrono>
 #include <set>
 
 #include "base/error.hpp"
@@ -244,11 +243,9 @@ std::optional<TaskLife> TaskStore::life(std::size_t task) const {
   const fs::path path = file(task, "running", ".json");
   struct stat status {};
   if (::stat(path.c_str(), &status) != 0) return std::nullopt;
-  const double now =
-      std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
   const Json json = Json::parse(output::read_file(path), nullptr, false);  // may be just being written
   TaskLife life;
-  life.age = now - (double(status.st_mtim.tv_sec) + 1e-9 * double(status.st_mtim.tv_nsec));
+  life.age = seconds_since_1970() - (double(status.st_mtim.tv_sec) + 1e-9 * double(status.st_mtim.tv_nsec));
   if (json.is_object()) {
     life.fraction = json.value("fraction", 0.0);
     life.process = json.value("process", std::int64_t{0});
