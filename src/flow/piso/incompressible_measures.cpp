@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -36,7 +37,8 @@ struct Rates {
   /// less.
   EJECTA_KERNEL Real growth(ConstFieldView now, ConstFieldView then, int i, int j, int k) const {
     const Real v = now(i, j, k), change = v - then(i, j, k);
-    return v * change >= 0 || std::abs(change) > std::abs(v) ? std::abs(change) : Real(0);
+    const bool grows = (v * change >= 0) | (std::abs(change) > std::abs(v));  // without a branch
+    return grows ? std::abs(change) : Real(0);
   }
   EJECTA_KERNEL Real acceleration(int i, int j, int k) const {
     return fluid(i, j, k) * inv_last *
@@ -79,14 +81,17 @@ double Incompressible::stable_dt(double courant, double last_dt, double most) {
   const Real by_courant = static_cast<Real>(1.0 / courant);
   // A NaN stays one, so that the owner of the run hears of it at once.
   const auto step = [](double rate) { return rate < 1e-30 ? 1e30 : 1.0 / rate; };
+  const auto largest = [&](auto turbulent) {  // known to the compiler: a load on a condition is no vector's
+    return reduce_max<4>(grid_.range(), [=](int i, int j, int k, Real* rate) {
+      rate[2] = turbulent() ? r.nut(i, j, k) : Real(0);
+      rate[3] = r.convection(i, j, k);
+      rate[0] = by_courant * rate[3] + r.viscosity(i, j, k, rate[2]);
+      // With eddies: beyond the explicit limit increments are smoothed, up to the convective limit.
+      rate[1] = rate_with(turbulent() ? by_courant * rate[3] : rate[0], by_courant * r.acceleration(i, j, k));
+    });
+  };
   const auto [both, with_growth, eddy, convection] =
-      reduce_max<4>(grid_.range(), [=, turbulent = turbulence_ != nullptr](int i, int j, int k, Real* rate) {
-        rate[2] = turbulent ? r.nut(i, j, k) : Real(0);
-        rate[3] = r.convection(i, j, k);
-        rate[0] = by_courant * rate[3] + r.viscosity(i, j, k, rate[2]);
-        // With eddies: beyond the explicit limit increments are smoothed, up to the convective limit.
-        rate[1] = rate_with(turbulent ? by_courant * rate[3] : rate[0], by_courant * r.acceleration(i, j, k));
-      });
+      turbulence_ ? largest(std::true_type{}) : largest(std::false_type{});
   convection_ = double(convection);
   if (turbulence_) {
     explicit_dt_ = step(double(both));
