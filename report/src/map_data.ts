@@ -45,6 +45,7 @@ export interface MapResult {
   jet_half_radius_m: number;
   plates: MapPlate[];
   measured?: { file: string; area_m2: number; area_ratio: number; outline_m: Point[] };
+  chance?: { x_m: number[]; y_m: number[]; chance: number[][]; contours: { chance: number; outlines_m: Point[][] }[] };
   paper_resolution: { x_m: number; y_low_m: number; y_high_m: number }[];
   runs_fine: number;
   runs_coarse: number;

@@ -50,11 +50,21 @@ export function mapView(map: MapResult): HTMLElement {
     root.append(svg("path", { d: `M${X(wx1) - 96} 12h52m-7 -4l7 4l-7 4`, class: "travel" }),
       svg("text", { x: X(wx1), y: 16, "text-anchor": "end" }, "travel"));
 
-    root.append(svg("path", { d: path(map.possible_m) + path(map.sure_m), class: "edge-band", "fill-rule": "evenodd" }),
+    if (map.chance) { // cells of the raster, darker the likelier, and lines of equal chance
+      const { x_m: xs, y_m: ys, chance, contours } = map.chance;
+      const [dx, dy] = [xs[1] - xs[0], ys[1] - ys[0]];
+      chance.forEach((row, j) => row.forEach((p, i) => {
+        if (p < 0.01) return;
+        const [x0, x1] = [Math.max(xs[i] - dx / 2, wx0), Math.min(xs[i] + dx / 2, wx1)];
+        const [y0, y1] = [Math.max(ys[j] - dy / 2, wy0), Math.min(ys[j] + dy / 2, wy1)];
+        root.append(svg("rect", { x: X(x0), y: Y(y1), width: X(x1) - X(x0) + 0.3, height: Y(y0) - Y(y1) + 0.3, class: "chance", "fill-opacity": (0.5 * p).toFixed(3) }));
+      }));
+      for (const c of contours) root.append(svg("path", { d: path(c.outlines_m), class: c.chance === 0.5 ? "outline" : "chance-line" }));
+    } else root.append(svg("path", { d: path(map.possible_m) + path(map.sure_m), class: "edge-band", "fill-rule": "evenodd" }),
       svg("path", { d: path(map.sure_m), class: "sure", "fill-rule": "evenodd" }));
     for (const plate of map.plates) root.append(svg("path", { d: path(plate.outlines_m), class: "plate-variant" }));
     if (map.measured) root.append(svg("path", { d: path([map.measured.outline_m]), class: "measured" }));
-    root.append(svg("path", { d: path(map.outlines_m), class: "outline" }));
+    if (!map.chance) root.append(svg("path", { d: path(map.outlines_m), class: "outline" }));
 
     root.append(svg("circle", { cx: X(0), cy: Y(0), r: map.jet_half_radius_m * scale, class: "jet" }),
       svg("path", { d: `M${X(0) - 6} ${Y(0)}h12M${X(0)} ${Y(0) - 6}v12`, class: "jet-axis" }));
@@ -87,7 +97,7 @@ export function mapView(map: MapResult): HTMLElement {
   const entry = (kind: string, text: string): HTMLElement => h("li", {}, h("span", { class: `map-key ${kind}` }), text);
   const key = h("ul", { class: "key" },
     entry("ejected", "ejected"), entry("kept", "not ejected"), map.runs_coarse > 0 && entry("coarse", "hollow: coarse run"),
-    entry("edge-band", "edge, 95 %"), map.plates.length > 0 && entry("plate-variant", "plate moved by its error"),
+    map.chance ? entry("chance", "chance of ejection: line 50 %, dashed 10 and 90 %") : entry("edge-band", "edge, 95 %"), map.plates.length > 0 && entry("plate-variant", "plate moved by its error"),
     map.measured && entry("measured", `measured (${map.measured.file})`), entry("jet", "jet, half its speed"),
     map.symmetric && h("li", {}, "small marks: mirror images, not run"));
   return h("figure", {}, holder, h("figcaption", {}, key));

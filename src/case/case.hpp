@@ -38,6 +38,7 @@ enum class ContactLaw { hertz_mindlin, linear };
 enum class WallKind { plane, plate, box, belt, mesh };
 enum class RunUntil { time, verdict, rest };
 enum class StudyDesign { grid, list, latin_hypercube, sobol };
+enum class MapLying { given, turned, any };
 
 /// [run]
 struct RunSpec {
@@ -386,8 +387,16 @@ struct MapSpec {
   int runs_at_once = 4;                ///< asked for together
   double area_error = 0.02;            ///< of the area: the map is finished
   std::array<double, 2> plate_error{0, 0};  ///< m, along x and z: the edge lies within this
-  std::int64_t seed = 1;                    ///< of the draws behind the errors
-  std::string measured;                     ///< CSV of a measured outline
+  MapLying lying = MapLying::given;         ///< of the bodies of the class that is mapped
+  std::array<double, 2> size_factor{1, 1};  ///< their sizes over the body's, evenly distributed between these
+  std::array<double, 2> arrival_error{0, 0};  ///< m, along and across: standard deviation of where they come
+  std::int64_t seed = 1;                      ///< of the draws behind the errors
+  std::string measured;                       ///< CSV of a measured outline
+
+  /// Runs differ in more than their place: a verdict is a matter of chance.
+  bool is_of_class() const { return lying != MapLying::given || size_factor[0] != size_factor[1]; }
+  /// The map is a chance of ejection.
+  bool is_of_chance() const { return is_of_class() || arrival_error[0] > 0.0 || arrival_error[1] > 0.0; }
 };
 
 struct Case {

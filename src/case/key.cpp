@@ -29,6 +29,7 @@ std::string bracketed(const List& list, const Format& format) {
 
 /// TOML takes 1 for an integer, 1.0 or 1e-3 for a float; both are read as numbers here.
 std::string scalar(double v, Dimension d) {
+  v += 0.0;  // "-0" would be read as the whole number 0, and written as "0" the next time
   return d == Dimension::none ? fmt::format("{}", v) : quoted(format_quantity(v, d));
 }
 

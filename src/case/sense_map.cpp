@@ -97,6 +97,11 @@ void sense_map(const Case& c, Findings& found) {
     if (const Symmetry s = symmetry_across(c, body); !s.refused.empty())
       found.error("map.symmetric", fmt::format("the map is not even in y: {}", s.refused),
                   "false, or nothing", "symmetric = false");
+  if (c.map.size_factor[0] > c.map.size_factor[1])
+    found.error("map.size_factor", "the sizes end below where they begin",
+                "the smallest, then the largest factor", "size_factor = [0.8, 1.2]");
+  if (c.map.lying != MapLying::given && c.bodies[body].shape == ShapeKind::sphere)
+    found.error("map.lying", "a sphere lies the same, however it is turned", "nothing, or another shape");
   if (c.map.max_fine_runs > c.map.max_runs)
     found.error("map.max_fine_runs", "more fine runs than runs", "at most map.max_runs",
                 "max_fine_runs = 15");

@@ -115,4 +115,12 @@ const std::vector<Word>& words(StudyDesign) {
   return list;
 }
 
+const std::vector<Word>& words(MapLying) {
+  static const std::vector<Word> list{
+      {"given", "as the body is"},
+      {"turned", "turned about the vertical by any angle, all alike: as bodies lie on a belt"},
+      {"any", "any rotation in space, all alike: as bodies tumble"}};
+  return list;
+}
+
 }  // namespace ejecta

@@ -24,6 +24,7 @@ const std::vector<Word>& words(ContactLaw);
 const std::vector<Word>& words(WallKind);
 const std::vector<Word>& words(RunUntil);
 const std::vector<Word>& words(StudyDesign);
+const std::vector<Word>& words(MapLying);
 
 /// The word of an enumerator, e.g. "k-omega-sst".
 template <class E>

@@ -36,6 +36,7 @@ MapSettings settings_of(const Case& c) {
   s.max_fine = m.max_fine_runs;
   s.area_error = m.area_error;
   s.seed = static_cast<std::uint64_t>(m.seed);
+  s.of_class = m.is_of_class();
   return s;
 }
 
@@ -159,7 +160,9 @@ class MapMaker {
     for (const PlatePlace& plate :
          {PlatePlace{-dx, 0.0}, PlatePlace{dx, 0.0}, PlatePlace{0.0, -dz}, PlatePlace{0.0, dz}})
       if (plate.x != 0.0 || plate.z != 0.0) plates.push_back({plate, outline_for(plate)});
-    if (settings_.symmetric && !symmetry_across(base_, mapped_body(base_)).sure) mirror_ = check_mirror();
+    if (settings_.symmetric && !settings_.of_class && !symmetry_across(base_, mapped_body(base_)).sure)
+      mirror_ = check_mirror();
+    if (base_.map.is_of_chance()) chance_ = finder_.chance_map(base_.map.arrival_error);
     show(finder_.outline(), plates, end == MapEnd::finished ? "finished" : "runs used up");
     const bool sound = finder_.contradictions().empty() && !(mirror_ && mirror_->contradicts());
     return sound ? end : MapEnd::contradicted;
@@ -176,6 +179,7 @@ class MapMaker {
                                     .history = history_,
                                     .contradictions = finder_.contradictions(),
                                     .mirror = mirror_,
+                                    .chance = chance_,
                                     .wall_time = spent_before_ + wall_seconds() - start_});
     store_.write_json("result.json", result);
     if (workers_.show) workers_.show(result);
@@ -189,6 +193,7 @@ class MapMaker {
   std::vector<MapPoint> runs_;
   std::vector<MapHistory> history_;
   std::optional<MirrorCheck> mirror_;
+  std::optional<RasterValues> chance_;
   double start_ = 0.0, spent_before_ = 0.0;  // s
 };
 

@@ -8,6 +8,7 @@
 #include "base/error.hpp"
 #include "case/extent.hpp"
 #include "case/symmetry.hpp"
+#include "study/map_class.hpp"
 
 namespace ejecta {
 namespace {
@@ -40,15 +41,23 @@ void follow(AxisSpec& axis, double y, double half_width) {
   for (double& point : axis.points) point += way;
 }
 
+/// Half of what the body takes along the axes of the world, as it lies at first, m.
+Vec3 turned_half_extent(const BodySpec& b) {
+  const Eigen::Matrix3d turn =
+      Eigen::AngleAxisd(b.rotation_angle, b.rotation_axis.normalized()).toRotationMatrix();
+  return turn.cwiseAbs() * half_extent(b);
+}
+
 }  // namespace
 
 Case map_run_case(const Case& base, const Proposal& at) {
   Case c = base;
   BodySpec& body = c.bodies.at(mapped_body(base));
+  become(body, drawn_member(base.map, at.at));
   body.along = at.at.x - c.launch.offset_along;
   body.across = at.at.y - c.launch.offset_across;
   if (at.fidelity == Fidelity::coarse) refine(c.grid, base.map.coarse_refinement);
-  follow(c.grid.axis[1], at.at.y, half_extent(body).y());
+  follow(c.grid.axis[1], at.at.y, turned_half_extent(body).y());
   c.splitter.solid = false;  // the margin is that of the flight, without the plate's blow
   c.run.until = RunUntil::verdict;
   c.output.fields_interval = c.output.slices_interval = 0.0;
@@ -78,7 +87,11 @@ MapFlight map_flight(const Case& base, const nlohmann::ordered_json& result) {
 }
 
 bool map_is_symmetric(const Case& base) {
-  return base.map.symmetric.value_or(symmetry_across(base, mapped_body(base)).sure);
+  if (base.map.symmetric) return *base.map.symmetric;
+  if (base.map.lying == MapLying::given) return symmetry_across(base, mapped_body(base)).sure;
+  Case plain = base;  // bodies that lie turned either way by chance are as even as the shape
+  plain.bodies.at(mapped_body(base)).rotation_angle = 0.0;
+  return symmetry_across(plain, mapped_body(base)).sure;
 }
 
 double coarse_cost(const Case& base) {

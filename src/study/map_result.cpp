@@ -8,6 +8,7 @@
 #include "case/load.hpp"
 #include "case/outline_file.hpp"
 #include "case/symmetry.hpp"
+#include "study/map_class.hpp"
 
 namespace ejecta {
 namespace {
@@ -65,6 +66,32 @@ double averaged_area(const MapSummary& m) {
   return area;
 }
 
+/// At the nodes of a raster, row by row from the lowest y, with the places of equal chance.
+Json chance_json(const RasterValues& chance) {
+  const Raster& r = chance.raster;
+  Json x = Json::array(), y = Json::array(), rows = Json::array(), contours = Json::array();
+  for (int i = 0; i <= r.cells_x; ++i) x.push_back(r.x(i));
+  for (int j = 0; j <= r.cells_y; ++j) {
+    y.push_back(r.y(r.node(0, j)));
+    const auto row = chance.values.begin() + r.node(0, j);
+    rows.push_back(std::vector<double>(row, row + r.row()));
+  }
+  for (const double level : {0.1, 0.5, 0.9}) {
+    std::vector<double> above = chance.values;
+    for (double& value : above) value -= level;
+    contours.push_back({{"chance", level}, {"outlines_m", polygons_json(positive_outlines(r, above))}});
+  }
+  return {{"x_m", x}, {"y_m", y}, {"chance", rows}, {"contours", contours}};
+}
+
+/// What a run of a class was made with.
+void add_member(const MapSpec& map, const Point2& at, Json& run) {
+  if (!map.is_of_class()) return;
+  const ClassMember member = drawn_member(map, at);
+  run["size_factor"] = member.size_factor;
+  run["turn_wxyz"] = {member.turn.w(), member.turn.x(), member.turn.y(), member.turn.z()};
+}
+
 void add_measured(const MapSummary& m, Json& r) {
   if (m.base.map.measured.empty()) return;
   std::vector<Problem> problems;  // told when the case was read
@@ -113,6 +140,7 @@ Json map_result(const MapSummary& m) {
                            {"area_m2", plate.outline.area.value},
                            {"area_error_m2", plate.outline.area.error},
                            {"outlines_m", polygons_json(plate.outline.outline)}});
+  if (m.chance) r["chance"] = chance_json(*m.chance);
   add_measured(m, r);
   const auto count = [&](Fidelity f) {
     return std::count_if(m.runs.begin(), m.runs.end(),
@@ -133,6 +161,7 @@ Json map_result(const MapSummary& m) {
            {"fine", run.fidelity == Fidelity::fine},
            {"wall_time_s", run.wall_time}};
     if (!run.reason.empty()) j["reason"] = run.reason;
+    add_member(m.base.map, run.at, j);
     r["runs"].push_back(std::move(j));
     seconds += run.wall_time;
   }
@@ -162,7 +191,11 @@ std::string map_sentence(const Json& r) {
   const double area = 1e6 * r["area_m2"].get<double>(), error = 1e6 * r["area_error_m2"].get<double>();
   const int fine = r["runs_fine"], coarse = r["runs_coarse"];
   std::string text;
-  if (area <= 0.0)
+  if (r.contains("chance"))
+    text = fmt::format(
+        "{} is ejected from {:.0f} ± {:.0f} mm² around the jet, its chance of ejection integrated",
+        r["body"].get<std::string>(), area, error);
+  else if (area <= 0.0)
     text = fmt::format("{} is ejected from nowhere in the window", r["body"].get<std::string>());
   else
     text = fmt::format(

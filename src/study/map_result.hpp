@@ -53,7 +53,8 @@ struct MapSummary {
   const std::vector<MapHistory>& history;
   std::vector<Contradiction> contradictions;
   std::optional<MirrorCheck> mirror;
-  double wall_time = 0.0;  ///< s
+  std::optional<RasterValues> chance;  ///< of ejection, where the case makes it one
+  double wall_time = 0.0;              ///< s
 };
 
 /// result.json of a map (docs/files.md).

@@ -38,15 +38,16 @@ constexpr std::size_t kPoints = 128;
 
 using Vector = std::array<double, kParameters>;
 
-ProcessParameters parameters_of(const Vector& v, double usual, bool two) {
+ProcessParameters parameters_of(const Vector& v, const Explanation& kind) {
   ProcessParameters p;
+  p.noise_of_place = kind.noise_of_place;
   p.length_x = std::exp(v[0]);
   p.length_y = std::exp(v[1]);
   p.noise = std::exp(v[2]);
   p.kinked = v[3] > 0.5;
-  p.above = usual * std::exp(v[4]);
-  p.below = usual * std::exp(v[5]);
-  if (two) {
+  p.above = kind.usual * std::exp(v[4]);
+  p.below = kind.usual * std::exp(v[5]);
+  if (kind.two) {
     p.scale = v[6];
     p.discrepancy = std::exp(v[7]);
   }
@@ -116,6 +117,9 @@ ConditionedProcess::ConditionedProcess(const ProcessParameters& parameters, bool
     : covariance_(parameters, mirrored), places_(places) {
   Eigen::MatrixXd k = covariance_.between(places, places);
   k.diagonal().array() += parameters.noise + kJitter;
+  for (Eigen::Index a = 0; parameters.noise_of_place && a < places.size(); ++a)
+    for (Eigen::Index b = 0; b < places.size(); ++b)
+      if (a != b && places.x[a] == places.x[b] && places.y[a] == places.y[b]) k(a, b) += parameters.noise;
   factor_.compute(k);
   values_ = margins.unaryExpr([&](double m) { return clipped(m, parameters); });
   weights_ = factor_.solve(values_);
@@ -145,8 +149,8 @@ Eigen::ArrayXd ConditionedProcess::left_out() const {
 }
 
 std::vector<ConditionedProcess> explain_runs(const Places& places, const Eigen::VectorXd& margins,
-                                             double usual, bool mirrored, bool two, int count) {
-  const int d = two ? kParameters : kParametersOfOneFidelity;
+                                             const Explanation& kind, int count) {
+  const int d = kind.two ? kParameters : kParametersOfOneFidelity;
   auto box = kRanges;
   std::array<Vector, kPoints> tried{};
   std::array<double, kPoints> weight{};
@@ -156,7 +160,7 @@ std::vector<ConditionedProcess> explain_runs(const Places& places, const Eigen::
       for (std::size_t c = 0; c < v.size(); ++c) v[c] = box[c].low + v[c] * (box[c].high - box[c].low);
       const auto at = static_cast<std::size_t>(n);
       tried[at] = v;
-      weight[at] = ConditionedProcess(parameters_of(v, usual, two), mirrored, places, margins).log_evidence();
+      weight[at] = ConditionedProcess(parameters_of(v, kind), kind.mirrored, places, margins).log_evidence();
     });
     const double best = *std::max_element(weight.begin(), weight.end());
     double sum = 0.0;
@@ -181,7 +185,7 @@ std::vector<ConditionedProcess> explain_runs(const Places& places, const Eigen::
     passed += weight[n];
     while (static_cast<int>(processes.size()) < count &&
            passed * count > static_cast<double>(processes.size()) + 0.5)
-      processes.emplace_back(parameters_of(tried[n], usual, two), mirrored, places, margins);
+      processes.emplace_back(parameters_of(tried[n], kind), kind.mirrored, places, margins);
   }
   return processes;
 }

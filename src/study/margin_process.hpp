@@ -30,6 +30,7 @@ struct ProcessParameters {
   double noise = 0.0;                     ///< variance of the noise over that of the process
   double scale = 1.0;                     ///< fine = scale * coarse + discrepancy
   double discrepancy = 0.0;               ///< variance of the discrepancy over that of the coarse process
+  bool noise_of_place = false;            ///< runs at one place, coarse and fine, share their noise
   bool kinked = false;                    ///< Matern 3/2 (kinks) instead of 5/2 (smooth)
   double above = 1.0, below = 1.0;        ///< m: margins beyond this hardly count, above and below zero
 };
@@ -94,8 +95,14 @@ class ConditionedProcess {
 
 /// The processes that explain the runs, each as often as its evidence weighs: there are too few runs to rely
 /// on the best one alone. Points of a lattice in the box of all parameters are weighted, and the next lattice
-/// fills the box around what weighs. `usual`: size of an ordinary margin, m; `two` fidelities are told apart.
+/// fills the box around what weighs.
+struct Explanation {
+  double usual = 1.0;           ///< size of an ordinary margin, m
+  bool mirrored = false;        ///< the margin is even in y
+  bool two = false;             ///< fidelities are told apart
+  bool noise_of_place = false;  ///< ProcessParameters
+};
 std::vector<ConditionedProcess> explain_runs(const Places& places, const Eigen::VectorXd& margins,
-                                             double usual, bool mirrored, bool two, int count);
+                                             const Explanation& kind, int count);
 
 }  // namespace ejecta

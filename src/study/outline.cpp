@@ -141,8 +141,12 @@ std::vector<ConditionedProcess> explain(std::vector<MapRun> runs, const MapSetti
   Places places = frame.places(points);
   for (std::size_t n = 0; n < runs.size(); ++n)
     places.fine[static_cast<Eigen::Index>(n)] = runs[n].fidelity == Fidelity::fine ? 1.0 : 0.0;
-  const bool two = settings.coarse_cost > 0.0;
-  return explain_runs(places, margins, usual_margin(runs, frame), settings.symmetric, two, count);
+  return explain_runs(places, margins,
+                      {.usual = usual_margin(runs, frame),
+                       .mirrored = settings.symmetric,
+                       .two = settings.coarse_cost > 0.0,
+                       .noise_of_place = settings.of_class},
+                      count);
 }
 
 /// Probability that a fine run ejects, noise included.
@@ -181,31 +185,52 @@ int emptiest(const Frame& frame, const std::vector<Point2>& nodes, std::span<con
   return best;
 }
 
+/// Square of what the values change by over a cell at a node.
+double square_of_change(const Raster& r, std::span<const double> values, int i, int j) {
+  const auto at = [&](int a, int b) {
+    return values[static_cast<std::size_t>(r.node(std::clamp(a, 0, r.cells_x), std::clamp(b, 0, r.cells_y)))];
+  };
+  const double gx = 0.5 * (at(i + 1, j) - at(i - 1, j)), gy = 0.5 * (at(i, j + 1) - at(i, j - 1));
+  return gx * gx + gy * gy;
+}
+
 /// How the area answers to the margin at each node, to first order: the density of a zero there. A zero
 /// between nodes must not slip through, so that the deviation includes half a cell's change of the mean.
 Eigen::VectorXd zero_density(const Raster& r, const Eigen::VectorXd& mean, const Eigen::VectorXd& variance) {
   Eigen::VectorXd density(r.nodes());
+  const std::span<const double> values(mean.data(), static_cast<std::size_t>(mean.size()));
   for (int j = 0; j <= r.cells_y; ++j)
     for (int i = 0; i <= r.cells_x; ++i) {
-      const auto at = [&](int a, int b) {
-        return mean[r.node(std::clamp(a, 0, r.cells_x), std::clamp(b, 0, r.cells_y))];
-      };
-      const double gx = 0.5 * (at(i + 1, j) - at(i - 1, j)), gy = 0.5 * (at(i, j + 1) - at(i, j - 1));
       const int n = r.node(i, j);
-      const double deviation = std::sqrt(variance[n] + (gx * gx + gy * gy) / 6.0);
+      const double deviation = std::sqrt(variance[n] + square_of_change(r, values, i, j) / 6.0);
       density[n] = normal_density(mean[n] / deviation) / deviation;
     }
   return density;
+}
+
+/// Integral of the chance that a margin of this mean and deviation is positive, m2. Within a cell the mean
+/// is evenly spread over what it changes by.
+double chance_area(const Raster& r, std::span<const double> means, double variance) {
+  double area = 0.0;
+  for (int j = 0; j <= r.cells_y; ++j)
+    for (int i = 0; i <= r.cells_x; ++i) {
+      const double part = (i == 0 || i == r.cells_x ? 0.5 : 1.0) * (j == 0 || j == r.cells_y ? 0.5 : 1.0);
+      const double deviation = std::sqrt(variance + square_of_change(r, means, i, j) / 12.0 + 1e-300);
+      area += part * normal_share(means[static_cast<std::size_t>(r.node(i, j))] / deviation);
+    }
+  return area * r.dx * r.dy;
 }
 
 /// What one process expects of runs at all options: how much the variance of the area falls.
 class Prospect {
  public:
   /// The first options are the nodes of the raster, fine.
-  Prospect(const ConditionedProcess& process, const Raster& raster, const Places& options)
+  Prospect(const ConditionedProcess& process, const Raster& raster, const Places& options, bool of_class)
       : process_(process), options_(options), field_(process.at(options)) {
+    const Eigen::VectorXd spread =
+        Eigen::VectorXd::Constant(raster.nodes(), of_class ? process.noise() : 0.0);
     const Eigen::VectorXd density =
-        zero_density(raster, field_.mean.head(raster.nodes()), field_.variance.head(raster.nodes()));
+        zero_density(raster, field_.mean.head(raster.nodes()), field_.variance.head(raster.nodes()) + spread);
     std::vector<Eigen::Index> where;
     for (Eigen::Index n = 0; n < density.size(); ++n)
       if (density[n] > 1e-2 * density.maxCoeff()) where.push_back(n);
@@ -272,8 +297,8 @@ std::vector<Eigen::Index> unsure_nodes(const ConditionedProcess::Field& f) {
 
 /// Margins drawn from a process, in Measures each. The variance of the process is drawn too, from what as
 /// many runs as there are leave of it.
-void draw(const ConditionedProcess& process, const Raster& r, const Places& nodes, std::uint64_t seed,
-          int number, std::span<Measures> out) {
+void draw(const ConditionedProcess& process, const Raster& r, const Places& nodes, bool of_class,
+          std::uint64_t seed, int number, std::span<Measures> out) {
   const auto f = process.at(nodes);
   const auto unsure = unsure_nodes(f);
   const auto n = static_cast<Eigen::Index>(unsure.size()), runs = f.whitened.rows();
@@ -304,7 +329,8 @@ void draw(const ConditionedProcess& process, const Raster& r, const Places& node
       values[node] = f.mean[unsure[static_cast<std::size_t>(k)]] + draws(k, static_cast<Eigen::Index>(d));
     }
     out[d] = measured(r, values);
-    if (out[d].area > 0.0) out[d].area = std::max(0.0, out[d].area + beyond);
+    if (of_class) out[d].area = chance_area(r, values, process.noise());
+    else if (out[d].area > 0.0) out[d].area = std::max(0.0, out[d].area + beyond);
   }
 }
 
@@ -326,15 +352,28 @@ Estimate estimate(std::span<const Measures> all, double Measures::*what, double 
 }
 
 /// The half below the axis added.
-std::vector<Polygon> whole_outlines(const Raster& r, const Eigen::VectorXd& values, bool symmetric) {
-  if (!symmetric) return positive_outlines(r, {values.data(), static_cast<std::size_t>(values.size())});
-  Raster whole = r;
-  whole.cells_y = 2 * r.cells_y;
-  whole.y0 = -r.dy * r.cells_y;
-  std::vector<double> mirrored;
+RasterValues whole_plane(const Raster& r, std::span<const double> values, bool symmetric) {
+  RasterValues whole{r, {values.begin(), values.end()}};
+  if (!symmetric) return whole;
+  whole.raster.cells_y = 2 * r.cells_y;
+  whole.raster.y0 = -r.dy * r.cells_y;
+  whole.values.clear();
   for (int j = -r.cells_y; j <= r.cells_y; ++j)
-    for (int i = 0; i <= r.cells_x; ++i) mirrored.push_back(values[r.node(i, std::abs(j))]);
-  return positive_outlines(whole, mirrored);
+    for (int i = 0; i <= r.cells_x; ++i)
+      whole.values.push_back(values[static_cast<std::size_t>(r.node(i, std::abs(j)))]);
+  return whole;
+}
+
+std::vector<Polygon> whole_outlines(const Raster& r, const Eigen::VectorXd& values, bool symmetric) {
+  const RasterValues all =
+      whole_plane(r, {values.data(), static_cast<std::size_t>(values.size())}, symmetric);
+  return positive_outlines(all.raster, all.values);
+}
+
+/// The middles of seven equal parts of the normal distribution, scaled to its variance.
+std::array<double, 7> normal_steps(double deviation) {
+  return {-1.6076 * deviation, -0.8685 * deviation, -0.4017 * deviation, 0.0,
+          0.4017 * deviation,  0.8685 * deviation,  1.6076 * deviation};
 }
 
 }  // namespace
@@ -401,7 +440,8 @@ std::vector<Proposal> OutlineFinder::ask(int count) {
   };
   const auto processes = explain(runs_, settings_, kProcessesToAsk);
   std::vector<Prospect> prospects;
-  for (const ConditionedProcess& p : processes) prospects.emplace_back(p, raster, options);
+  for (const ConditionedProcess& p : processes)
+    prospects.emplace_back(p, raster, options, settings_.of_class);
   const auto run_at = [&](Eigen::Index option) {
     for_each_index(static_cast<int>(prospects.size()),
                    [&](int k) { prospects[static_cast<std::size_t>(k)].run_at(option); });
@@ -470,7 +510,7 @@ Outline OutlineFinder::outline() const {
 
   std::vector<Measures> all(processes.size() * kDraws);
   for_each_index_dynamic(static_cast<int>(processes.size()), [&](int k) {
-    draw(processes[static_cast<std::size_t>(k)], raster, nodes, settings_.seed, k,
+    draw(processes[static_cast<std::size_t>(k)], raster, nodes, settings_.of_class, settings_.seed, k,
          std::span(all).subspan(static_cast<std::size_t>(k) * kDraws, kDraws));
   });
   Outline out;
@@ -505,6 +545,25 @@ bool OutlineFinder::is_finished(const Outline& outline) const {
 
 std::vector<double> OutlineFinder::chances(std::span<const Point2> places) const {
   return chances_of(places, runs_, settings_);
+}
+
+RasterValues OutlineFinder::chance_map(const std::array<double, 2>& arrival_error) const {
+  const Frame frame(settings_);
+  const Raster raster = frame.raster(kCellsToAsk);
+  const bool spread = arrival_error[0] > 0.0 || arrival_error[1] > 0.0;
+  std::vector<Point2> places;
+  for (const Point2& node : nodes_of(raster)) {
+    if (!spread) places.push_back(node);
+    else
+      for (const double x : normal_steps(arrival_error[0]))
+        for (const double y : normal_steps(arrival_error[1])) places.push_back({node.x + x, node.y + y});
+  }
+  const std::vector<double> each = chances_of(places, runs_, settings_);
+  const std::size_t together = each.size() / static_cast<std::size_t>(raster.nodes());
+  std::vector<double> chance(static_cast<std::size_t>(raster.nodes()), 0.0);
+  for (std::size_t n = 0; n < each.size(); ++n)
+    chance[n / together] += each[n] / static_cast<double>(together);
+  return whole_plane(raster, chance, settings_.symmetric);
 }
 
 /// A run that stands against all others also bends the process that judges it: the judgement is that of the

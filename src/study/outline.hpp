@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -32,7 +33,10 @@ struct MapSettings {
   int max_runs = 35;         ///< of both fidelities
   int max_fine = 15;         ///< where there are coarse runs
   double area_error = 0.02;  ///< of the area: the map is finished
-  std::uint64_t seed = 1;    ///< of the draws behind the errors
+  /// Every place has a run of another body of a class: the area is the integral of the chance of ejection,
+  /// and what bodies at one place differ by is the noise of the margin.
+  bool of_class = false;
+  std::uint64_t seed = 1;  ///< of the draws behind the errors
 };
 
 /// Where to run, and how finely.
@@ -64,6 +68,9 @@ class OutlineFinder {
   bool is_finished(const Outline& outline) const;
   /// Probability that a fine run ejects at these places, noise included.
   std::vector<double> chances(std::span<const Point2> places) const;
+  /// The same on a raster of the whole window, of a body that comes beside where it was expected by a normal
+  /// distribution of these deviations along and across, m.
+  RasterValues chance_map(const std::array<double, 2>& arrival_error) const;
   std::vector<Contradiction> contradictions() const;
 
  private:

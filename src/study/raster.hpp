@@ -25,6 +25,11 @@ struct Raster {
   double y(int node) const { return y0 + dy * (node / row()); }
 };
 
+struct RasterValues {
+  Raster raster;
+  std::vector<double> values;  ///< at the nodes
+};
+
 /// Area where `values` at the nodes are positive, m2.
 double positive_area(const Raster& raster, std::span<const double> values);
 

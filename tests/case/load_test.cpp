@@ -121,6 +121,12 @@ TEST(LoadCase, WhatIsWrittenIsReadBackToTheSameText) {
   const std::string once = write_case(parse_case(paper, "paper.toml"));
   const std::string twice = write_case(parse_case(once, "resolved.toml"));
   EXPECT_EQ(once, twice);
+
+  Case turned = parse_case(paper, "paper.toml");  // as arithmetic makes them: zeros with a sign
+  turned.bodies.at(0).rotation_axis = {-0.0, 0.0, -1.0};
+  turned.bodies.at(0).rotation_angle = -0.5;
+  const std::string first = write_case(turned);
+  EXPECT_EQ(first, write_case(parse_case(first, "resolved.toml")));
 }
 
 TEST(LoadCase, EveryNameOfAFileCanBeMadeAbsolute) {

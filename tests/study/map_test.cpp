@@ -146,6 +146,68 @@ TEST_F(Maps, FindsAnEllipseWithItsErrors) {
   }
 }
 
+/// Cubes of 80 to 120 % that lie turned: the larger ones are not thrown as high.
+TEST_F(Maps, OfAClassIsAChanceOfEjection) {
+  const Case base =
+      read(std::string(kCase) +
+           "lying = \"turned\"\nsize_factor = [0.8, 1.2]\narrival_error = [\"1 mm\", \"1 mm\"]\n"
+           "max_runs = 40\n");
+  const auto thrown = [](const Case& c, const RunRequest& request) {
+    RunAnswer answer = flown(c, request);
+    answer.quantities["bodies"][0]["final_position_m"][2] =
+        answer.quantities["bodies"][0]["final_position_m"][2].get<double>() +
+        0.05 * (1.0 - c.bodies[0].size.x() / 10e-3);
+    return answer;
+  };
+  map(base, "class", 1000, thrown);
+  const Json r = result("class");
+  // Clearances are 10 mm more or less at the ends, evenly spread: the mean over the class of the ellipses.
+  double truth = 0.0;
+  for (int n = 0; n < 1000; ++n) {
+    const double grown = 1.0 + (0.01 - 0.02 * (n + 0.5) / 1000) / 0.03;
+    truth += std::numbers::pi * kHalfX * kHalfY * grown * grown / 1000;
+  }
+  EXPECT_NEAR(r["area_m2"], truth, r["area_error_m2"].get<double>());
+  EXPECT_LT(r["area_error_m2"], 0.35 * truth);
+  EXPECT_TRUE(r["symmetric"].get<bool>());
+  double least = 2.0, most = 0.0;
+  for (const Json& run : r["runs"]) {
+    least = std::min(least, run["size_factor"].get<double>());
+    most = std::max(most, run["size_factor"].get<double>());
+    EXPECT_NEAR(std::hypot(run["turn_wxyz"][0].get<double>(), run["turn_wxyz"][3].get<double>()), 1.0, 1e-12);
+  }
+  EXPECT_GE(least, 0.8);
+  EXPECT_LT(least, 0.87);
+  EXPECT_GT(most, 1.13);
+  EXPECT_LE(most, 1.2);
+  const Json& chance = r["chance"];
+  ASSERT_EQ(chance["chance"].size(), chance["y_m"].size());
+  ASSERT_EQ(chance["chance"][0].size(), chance["x_m"].size());
+  EXPECT_EQ(chance["contours"].size(), 3u);
+  map(base, "again", 1000, thrown);
+  EXPECT_EQ(without_times(r), without_times(result("again")));
+}
+
+TEST_F(Maps, MembersOfAClassAreTheBodyScaledAndTurned) {
+  Case base = read();
+  base.map.lying = MapLying::any;
+  base.map.size_factor = {2.0, 2.0};
+  base.bodies[0].mass = 1e-3;
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+  constexpr int kPlaces = 400;
+  for (int n = 0; n < kPlaces; ++n) {
+    const Case c = map_run_case(base, {{1e-4 * n - 0.02, 0.003}, Fidelity::fine});
+    EXPECT_NEAR(c.bodies[0].size.x(), 20e-3, 1e-12);
+    EXPECT_NEAR(*c.bodies[0].mass, 8e-3, 1e-12);
+    mean += Eigen::AngleAxisd(c.bodies[0].rotation_angle, c.bodies[0].rotation_axis) *
+            Eigen::Vector3d(1.0, 0.5, 0.2) / kPlaces;
+  }
+  EXPECT_LT(mean.norm(), 4.0 / std::sqrt(double(kPlaces)));  // no direction is preferred
+  const Case coarse = map_run_case(base, {{0.001, 0.003}, Fidelity::coarse}),
+             fine = map_run_case(base, {{0.001, 0.003}, Fidelity::fine});
+  EXPECT_EQ(coarse.bodies[0].rotation_angle, fine.bodies[0].rotation_angle);
+}
+
 TEST_F(Maps, StoppedAndStartedAgainItIsTheSameMap) {
   map(read(), "whole");
   MapEnd end = MapEnd::stopped;
