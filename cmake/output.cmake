@@ -32,6 +32,8 @@ if(NPM AND EJECTA_REPORT)
 else()
   message(STATUS "npm not found: reports will be plain tables")
   file(WRITE ${report_page} "")
+  file(WRITE ${report_page}.hpp "")
 endif()
-set_source_files_properties(${PROJECT_SOURCE_DIR}/src/output/report_page.cpp PROPERTIES
-  COMPILE_DEFINITIONS "EJECTA_REPORT_PAGE=\"${report_page}\"" OBJECT_DEPENDS ${report_page})
+set_source_files_properties(${PROJECT_SOURCE_DIR}/src/output/report_page.cpp PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON
+  COMPILE_DEFINITIONS "EJECTA_REPORT_PAGE=\"${report_page}\";EJECTA_REPORT_PAGE_SUM=\"${report_page}.hpp\""
+  OBJECT_DEPENDS ${report_page})

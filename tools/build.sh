@@ -9,6 +9,7 @@ mkdir -p build
 if [[ ! -f build/$preset/build.ninja ]]; then
   cmake --preset "$preset" -DCMAKE_C_COMPILER_LAUNCHER=ccache -DCMAKE_CXX_COMPILER_LAUNCHER=ccache > "$log" 2>&1 || { cat "$log"; exit 1; }
 fi
+export CCACHE_BASEDIR=${CCACHE_BASEDIR:-$PWD} CCACHE_NOHASHDIR=1  # a clone elsewhere finds what this one compiled
 export CCACHE_DEPEND=1  # what the compiler read is taken from its own list: nothing is preprocessed twice
 targets=()
 (($# > 0)) && targets=(--target "$@")

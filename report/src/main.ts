@@ -1,5 +1,6 @@
 import "./style.css";
 import { bodyColour, isDark } from "./colour";
+import { campaignPage, readCampaign } from "./campaign_page";
 import { readRuns, type JsonObject, type Run } from "./data";
 import { h, section } from "./dom";
 import { figureCharts, pictureViews } from "./figures";
@@ -150,6 +151,8 @@ async function content(): Promise<[title: string, page: HTMLElement]> {
   const study = readStudy();
   if (study) return [study.title, studyPage(study)];
   const runs = await readRuns();
+  const campaign = readCampaign();
+  if (campaign) return [campaign.title, campaignPage(campaign, runs, (run) => makePlayer([run]))];
   return [titleOf(runs), page(runs)];
 }
 

@@ -12,7 +12,7 @@ function fact(value: number, error: number | undefined, factor: number, digits: 
   return h("div", {}, h("dd", {}, text, h("span", { class: "unit" }, ` ${unit}`)), h("dt", {}, label));
 }
 
-function facts(map: MapResult): HTMLElement {
+export function facts(map: MapResult): HTMLElement {
   const list = h("dl", {},
     fact(map.area_m2, map.area_error_m2, 1e6, 0, "mm\u00b2", `${map.chance ? "chance of ejection, integrated" : "area"}; error: 95 % of what the runs allow`),
     fact(map.half_width_across_m, map.half_width_across_error_m, 1e3, 1, "mm", "to either side of the jet"),

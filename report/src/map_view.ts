@@ -52,11 +52,11 @@ export function mapView(map: MapResult): HTMLElement {
 
     if (map.chance) { // cells of the raster, darker the likelier, and lines of equal chance
       const { x_m: xs, y_m: ys, chance, contours } = map.chance;
-      const [dx, dy] = [xs[1] - xs[0], ys[1] - ys[0]];
+      const [dx, dy] = [xs[1]! - xs[0]!, ys[1]! - ys[0]!];
       chance.forEach((row, j) => row.forEach((p, i) => {
         if (p < 0.01) return;
-        const [x0, x1] = [Math.max(xs[i] - dx / 2, wx0), Math.min(xs[i] + dx / 2, wx1)];
-        const [y0, y1] = [Math.max(ys[j] - dy / 2, wy0), Math.min(ys[j] + dy / 2, wy1)];
+        const [x0, x1] = [Math.max(xs[i]! - dx / 2, wx0), Math.min(xs[i]! + dx / 2, wx1)];
+        const [y0, y1] = [Math.max(ys[j]! - dy / 2, wy0), Math.min(ys[j]! + dy / 2, wy1)];
         root.append(svg("rect", { x: X(x0), y: Y(y1), width: X(x1) - X(x0) + 0.3, height: Y(y0) - Y(y1) + 0.3, class: "chance", "fill-opacity": (0.5 * p).toFixed(3) }));
       }));
       for (const c of contours) root.append(svg("path", { d: path(c.outlines_m), class: c.chance === 0.5 ? "outline" : "chance-line" }));

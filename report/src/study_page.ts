@@ -96,6 +96,11 @@ function allRuns(study: StudyResult): HTMLElement {
       ...[...study.keys.map((k) => k.key), ...study.quantities].map((c) => h("td", {}, text(run[c]))))))));
 }
 
+/** Every quantity against every key. */
+export function studyCharts(study: StudyResult): HTMLElement[] {
+  return study.quantities.flatMap((q) => study.keys.map((k) => scatter(study, k, q)).filter((c): c is HTMLElement => c !== null));
+}
+
 export function studyPage(study: StudyResult): HTMLElement {
   const done = study.runs.filter((r) => r.state === "done").length;
   const failed = study.runs.filter((r) => ["diverged", "refused", "crashed"].includes(r.state)).length;
@@ -106,7 +111,7 @@ export function studyPage(study: StudyResult): HTMLElement {
   };
   add("extremes", "Best and worst", "", extremes(study));
   add("effects", "Main effects", "Means over all other keys; the ends of ranges with many values are means over a sixth of the range.", effects(study));
-  const charts = study.quantities.flatMap((q) => study.keys.map((k) => scatter(study, k, q)).filter((c): c is HTMLElement => c !== null));
+  const charts = studyCharts(study);
   add("charts", "Results against keys", "", charts.length > 0 ? h("div", { class: "chart-grid" }, ...charts) : null);
   add("runs", "Runs", study.runs.length > 500 ? "The first 500; all of them are in runs.csv." : "Also in runs.csv.", allRuns(study));
   const links = [...main.querySelectorAll("section")].map((s) => h("a", { href: `#${s.id}` }, s.querySelector("h2")!.textContent));

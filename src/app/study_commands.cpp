@@ -10,6 +10,7 @@
 #include "app/study_runs.hpp"
 #include "base/error.hpp"
 #include "base/stopwatch.hpp"
+#include "case/node_path.hpp"
 #include "output/output_file.hpp"
 #include "output/report.hpp"
 #include "simulation/body_checks.hpp"
@@ -146,6 +147,9 @@ int map_case(const StudyOptions& o) {
     return work(o, tasks, which, at_once, signals, {});
   };
   workers.further = all_checks();
+  workers.place = [tree = case_tree(o.path, o.overrides)](const std::string& key) {
+    return locate(tree, key);
+  };
   workers.show = [&](const nlohmann::ordered_json& result) {
     output::write_study_report("map", result, directory / "report.html");
     note(map_sentence(result));

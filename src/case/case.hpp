@@ -39,6 +39,7 @@ enum class WallKind { plane, plate, box, belt, mesh };
 enum class RunUntil { time, verdict, rest };
 enum class StudyDesign { grid, list, latin_hypercube, sobol };
 enum class MapLying { given, turned, any };
+enum class CampaignKind { run, jet, jet_sweep, map, study };
 
 /// [run]
 struct RunSpec {
@@ -399,6 +400,22 @@ struct MapSpec {
   bool is_of_chance() const { return is_of_class() || arrival_error[0] > 0.0 || arrival_error[1] > 0.0; }
 };
 
+/// [[campaign.part]]: one command of a campaign
+struct CampaignPartSpec {
+  CampaignKind kind = CampaignKind::run;
+  std::string file;              ///< the case
+  std::string title;             ///< empty: that of the case
+  std::string figures;           ///< what it remakes, e.g. "Figure 10"
+  std::vector<std::string> set;  ///< "section.key=value", as --set
+};
+
+/// [campaign]: a programme of runs, jets, maps and studies with one report
+struct CampaignSpec {
+  bool enabled = false;
+  std::string title;
+  std::vector<CampaignPartSpec> parts;
+};
+
 struct Case {
   std::string path;                ///< of the file it came from; relative names inside are relative to it
   std::vector<std::string> bases;  ///< paths of the files that it extends
@@ -432,6 +449,7 @@ struct Case {
   ConvergenceSpec convergence;
   StudySpec study;
   MapSpec map;
+  CampaignSpec campaign;  ///< such a file has nothing else
 };
 
 inline bool is_incompressible(const Case& c) { return c.flow.solver == FlowSolver::incompressible; }

@@ -38,5 +38,6 @@ void sense_records(const Case&, Findings&);
 void sense_idle(const Case&, Findings&);
 void sense_expectations(const Case&, Findings&);
 void sense_map(const Case&, Findings&);
+void sense_campaign(const Case&, Findings&);
 
 }  // namespace ejecta

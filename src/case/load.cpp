@@ -66,6 +66,10 @@ Case resolve(const Node& root, const std::string& name, bool syntax_errors, std:
   read_case(root, c, problems);
   if (syntax_errors) std::erase_if(problems, [](const Problem& p) { return p.what == "missing"; });
 
+  if (c.campaign.enabled)  // which computes nothing itself
+    std::erase_if(problems,
+                  [](const Problem& p) { return p.what == "missing" && section_of(p.key) == "run"; });
+
   fill_in(c);
   const auto add = [&](std::vector<Problem> more) {
     for (Problem& p : more) {
@@ -134,6 +138,7 @@ void for_each_file(C& c, const Visit& visit) {
   for (auto& w : c.walls) visit(w.file);
   for (auto& m : c.measured) visit(m.file);
   visit(c.map.measured);
+  for (auto& part : c.campaign.parts) visit(part.file);
 }
 
 }  // namespace

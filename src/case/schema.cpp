@@ -77,7 +77,10 @@ std::vector<Section> sections(Case& c) {
            table("study", "Many runs that differ in some keys: `ejecta study`", c.study, &c.study.enabled),
            list("study.vary", "A key that the study varies", c.study.vary),
            table("map", "The places around the jet from which a body is ejected: `ejecta map`", c.map,
-                 &c.map.enabled)})
+                 &c.map.enabled),
+           table("campaign", "A programme of runs with one report: `ejecta campaign`", c.campaign,
+                 &c.campaign.enabled),
+           list("campaign.part", "One command of the programme", c.campaign.parts)})
     all.push_back(std::move(s));
   return all;
 }

@@ -48,5 +48,7 @@ std::vector<Key> keys(ConvergenceSpec&);
 std::vector<Key> keys(StudySpec&);
 std::vector<Key> keys(VarySpec&);
 std::vector<Key> keys(MapSpec&);
+std::vector<Key> keys(CampaignSpec&);
+std::vector<Key> keys(CampaignPartSpec&);
 
 }  // namespace ejecta

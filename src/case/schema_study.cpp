@@ -124,4 +124,37 @@ std::vector<Key> keys(MapSpec& s) {
        .file = true}};
 }
 
+std::vector<Key> keys(CampaignSpec& s) {
+  return {{.name = "title",
+           .slot = &s.title,
+           .help = "Title of the report",
+           .unset = "the name of the file",
+           .example = "\"Four particles, three maps\""}};
+}
+
+std::vector<Key> keys(CampaignPartSpec& s) {
+  return {{"kind", choice(s.kind), none, anything, "What is done with the case", ""},
+          {.name = "case",
+           .slot = &s.file,
+           .help = "Case file (.toml)",
+           .required = true,
+           .example = "\"10mm-cubic.toml\"",
+           .file = true},
+          {.name = "title",
+           .slot = &s.title,
+           .help = "Heading of the part",
+           .unset = "the title of the case",
+           .example = "\"20 mm flat particle\""},
+          {.name = "figures",
+           .slot = &s.figures,
+           .help = "What the part remakes, for its heading",
+           .unset = "nothing",
+           .example = "\"Figure 10\""},
+          {.name = "set",
+           .slot = &s.set,
+           .help = "Keys of the case that are changed, as for --set",
+           .unset = "none",
+           .example = R"(["valve.supply_pressure=600 kPa gauge"])"}};
+}
+
 }  // namespace ejecta

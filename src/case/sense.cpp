@@ -37,6 +37,10 @@ const std::array<Part, 15> parts{{
 
 std::vector<Problem> check_sense(const Case& c, std::set<std::string> unsound) {
   Findings found;
+  if (c.campaign.enabled) {
+    sense_campaign(c, found);
+    return found.list;
+  }
   for (const Part& part : parts) {
     if (std::any_of(part.sections.begin(), part.sections.end(),
                     [&](const std::string& s) { return unsound.contains(s); }))

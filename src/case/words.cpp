@@ -115,6 +115,15 @@ const std::vector<Word>& words(StudyDesign) {
   return list;
 }
 
+const std::vector<Word>& words(CampaignKind) {
+  static const std::vector<Word> list{{"run", "`ejecta run`"},
+                                      {"jet", "`ejecta jet`"},
+                                      {"jet-sweep", "`ejecta jet --sweep`"},
+                                      {"map", "`ejecta map`"},
+                                      {"study", "`ejecta study`"}};
+  return list;
+}
+
 const std::vector<Word>& words(MapLying) {
   static const std::vector<Word> list{
       {"given", "as the body is"},

@@ -25,6 +25,7 @@ const std::vector<Word>& words(WallKind);
 const std::vector<Word>& words(RunUntil);
 const std::vector<Word>& words(StudyDesign);
 const std::vector<Word>& words(MapLying);
+const std::vector<Word>& words(CampaignKind);
 
 /// The word of an enumerator, e.g. "k-omega-sst".
 template <class E>

@@ -144,6 +144,14 @@ void write_study_report(const std::string& kind, const ordered_json& result, con
   write_page(in_script(data.dump(-1, ' ', false, ordered_json::error_handler_t::replace)), out);
 }
 
+void write_campaign_report(const ordered_json& campaign, std::span<const fs::path> runs,
+                           const fs::path& out) {
+  std::string json = report_json(runs);
+  json.pop_back();
+  const std::string parts = campaign.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
+  write_page(json + ",\"campaign\":" + in_script(parts) + "}", out);
+}
+
 void write_report(const fs::path& run) { write_report(std::span(&run, 1), run / "report.html"); }
 
 }  // namespace ejecta::output

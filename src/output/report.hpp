@@ -20,6 +20,11 @@ void write_report(const std::filesystem::path& run);
 void write_study_report(const std::string& kind, const nlohmann::ordered_json& result,
                         const std::filesystem::path& out);
 
+/// The page of a campaign: what `campaign` says of its parts, with the runs that they name by their number in
+/// `runs`.
+void write_campaign_report(const nlohmann::ordered_json& campaign,
+                           std::span<const std::filesystem::path> runs, const std::filesystem::path& out);
+
 /// The JSON that the page shows; "<" is written as \u003c so that it can stand inside a script element.
 std::string report_json(std::span<const std::filesystem::path> runs);
 

@@ -1,6 +1,8 @@
 #include <cstddef>
 
 #include "output/report.hpp"
+// The sum of the page: compilers' caches know what is included, and nothing of what the assembler takes in.
+#include EJECTA_REPORT_PAGE_SUM
 
 // The file becomes part of the program as it is (a C array of it would take minutes to compile).
 asm(".section .rodata\n"

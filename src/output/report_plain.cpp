@@ -46,7 +46,7 @@ std::string plain_report(std::string_view report_json) {
     add_rows(html, "", run.at("result"));
     html += "</table>\n";
   }
-  for (const char* kind : {"map", "study"})
+  for (const char* kind : {"map", "study", "campaign"})
     if (data.contains(kind)) {
       html += fmt::format("<h1>{}</h1>\n<p><strong>{}</strong></p>\n<table>\n",
                           xml_escaped(data[kind].value("title", "")),

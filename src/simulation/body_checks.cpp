@@ -432,7 +432,9 @@ std::vector<Problem> check_bodies(const Case& original, std::optional<Scene>* se
 
 Case load_checked(const std::string& path, const std::vector<std::string>& overrides,
                   std::vector<Problem>* warnings, std::optional<Scene>* scene) {
-  return load_case(path, overrides, warnings, [scene](const Case& c) { return check_bodies(c, scene); });
+  return load_case(path, overrides, warnings, [scene](const Case& c) {
+    return c.campaign.enabled ? std::vector<Problem>{} : check_bodies(c, scene);  // which has none
+  });
 }
 
 }  // namespace ejecta

@@ -83,27 +83,37 @@ class MapMaker {
             {"refinement", p.fidelity == Fidelity::coarse ? base_.map.coarse_refinement : 1.0}};
   }
 
-  /// The corners of the window and its middle, in both fidelities.
+  /// The middle of the window, its ends along and its corners, in both fidelities: what holds in the middle
+  /// and not there is a fault of the window.
   void refuse_what_cannot_run() const {
+    if (!workers_.further) return;
     const Window& w = settings_.window;
-    const double low = settings_.symmetric ? 0.0 : w.y_low;
+    const double low = settings_.symmetric ? 0.0 : w.y_low, middle = 0.5 * (w.x_low + w.x_high);
+    const struct {
+      const char* key;
+      Point2 at;
+    } places[]{{"", {middle, low}},
+               {"map.along", {w.x_low, low}},
+               {"map.along", {w.x_high, low}},
+               {"map.across", {w.x_low, w.y_high}},
+               {"map.across", {w.x_high, w.y_high}}};
     std::set<std::string> told;
-    std::string all;
+    std::vector<Problem> all;
     for (const Fidelity fidelity : {Fidelity::fine, Fidelity::coarse}) {
       if (fidelity == Fidelity::coarse && settings_.coarse_cost == 0.0) continue;
-      for (const Point2& at : {Point2{w.x_low, low}, Point2{w.x_high, low}, Point2{w.x_low, w.y_high},
-                               Point2{w.x_high, w.y_high}, Point2{0.5 * (w.x_low + w.x_high), low}}) {
-        std::vector<Problem> problems;
-        if (workers_.further) problems = workers_.further(map_run_case(base_, {at, fidelity}));
-        for (const Problem& p : problems) {
+      for (const auto& [key, at] : places)
+        for (Problem p : workers_.further(map_run_case(base_, {at, fidelity}))) {
           if (p.severity != Severity::error || !told.insert(p.what).second) continue;
-          all +=
-              fmt::format("{}: error: the {} run of the map at x = {:.4g} mm, y = {:.4g} mm: {}", base_.path,
-                          fidelity == Fidelity::fine ? "fine" : "coarse", 1e3 * at.x, 1e3 * at.y, render(p));
+          p.what = fmt::format("the {} run of the map at x = {:.4g} mm, y = {:.4g} mm: {}{}",
+                               fidelity == Fidelity::fine ? "fine" : "coarse", 1e3 * at.x, 1e3 * at.y,
+                               *key ? p.key + ": " : "", p.what);
+          if (*key) p.key = key;
+          if (fidelity == Fidelity::coarse && !*key) p.key = "map.coarse_refinement";
+          if (workers_.place) p.place = workers_.place(p.key);
+          all.push_back(std::move(p));
         }
-      }
     }
-    if (!all.empty()) throw InputError(all);
+    if (!all.empty()) throw CaseError(std::move(all));
   }
 
   void take(const Proposal& p, std::size_t task) {

@@ -17,6 +17,8 @@ struct MapWorkers {
   std::function<bool(const TaskStore&, std::span<const std::size_t>)> run;
   /// What rooms that know more have against a run.
   FurtherChecks further{};
+  /// Where a key stands in the case file.
+  std::function<Place(const std::string& key)> place{};
   /// Is shown the map after every few runs, and at its end.
   std::function<void(const nlohmann::ordered_json&)> show{};
   Note note{};

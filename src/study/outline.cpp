@@ -30,6 +30,8 @@ constexpr double kUnsure = 3.5;
 constexpr double kQuantile = 1.96;  // standard deviations within which 95 % lie
 /// Fine runs that repeat coarse ones before others may stand alone: what ties the fidelities together.
 constexpr int kPairs = 5;
+/// Coarse runs before the first fine one: where the boundary is, so that none is spent far from it.
+constexpr int kCoarseFirst = 20;
 /// A verdict less likely than this contradicts the others: one in a thousand, so that the runs of a map
 /// seldom raise the alarm by chance.
 constexpr double kContradiction = 1e-3;
@@ -454,7 +456,8 @@ std::vector<Proposal> OutlineFinder::ask(int count) {
     if (two) {
       const int pairs = std::min(kPairs, settings_.max_fine);
       const int fine = asked(Fidelity::fine), left = settings_.max_runs - all_asked();
-      const bool more_fine = (fine < settings_.max_fine), alone = (fine >= kPairs);
+      const bool shaped = asked(Fidelity::coarse) >= std::min(kCoarseFirst, settings_.max_runs - pairs);
+      const bool more_fine = shaped && fine < settings_.max_fine, alone = (fine >= kPairs);
       const bool room_for_coarse = (left > pairs - fine);
       for (int n = 0; n < raster.nodes(); ++n) {
         allowed[static_cast<std::size_t>(n)] = more_fine && alone;

@@ -30,6 +30,8 @@ add_test(NAME app.study COMMAND ${Python3_EXECUTABLE} ${CMAKE_CURRENT_LIST_DIR}/
 set_tests_properties(app.study PROPERTIES LABELS fast TIMEOUT 600)
 add_test(NAME app.study_long COMMAND ${Python3_EXECUTABLE} ${CMAKE_CURRENT_LIST_DIR}/study_test.py $<TARGET_FILE:ejecta> 50 10000)
 set_tests_properties(app.study_long PROPERTIES LABELS slow TIMEOUT 3600)
+add_test(NAME app.campaign COMMAND ${Python3_EXECUTABLE} ${CMAKE_CURRENT_LIST_DIR}/campaign_test.py $<TARGET_FILE:ejecta>)
+set_tests_properties(app.campaign PROPERTIES LABELS fast TIMEOUT 300)
 # A real SLURM of one node, where Debian's slurm-wlm is installed.
 add_test(NAME app.slurm COMMAND ${Python3_EXECUTABLE} ${CMAKE_CURRENT_LIST_DIR}/slurm_test.py $<TARGET_FILE:ejecta>)
 set_tests_properties(app.slurm PROPERTIES LABELS slow SKIP_RETURN_CODE 77 TIMEOUT 600 RUN_SERIAL ON)

@@ -9,6 +9,7 @@
 
 #include "base/error.hpp"
 #include "case/extent.hpp"
+#include "case/node_path.hpp"
 #include "output/output_file.hpp"
 #include "scratch_directory.hpp"
 #include "study/map_case.hpp"
@@ -305,6 +306,20 @@ TEST_F(Maps, WhatCannotRunAtTheRimIsRefusedBeforeTheFirstRun) {
   } catch (const InputError& e) {
     EXPECT_THAT(e.what(), HasSubstr("y = 18 mm"));
     EXPECT_THAT(e.what(), HasSubstr("too coarse out there"));
+  }
+
+  // With the file at hand: the line of what is at fault.
+  std::ofstream(folder_ / "egg.toml") << kCase;
+  const Node tree = case_tree(folder_ / "egg.toml");
+  workers.place = [&](const std::string& key) { return locate(tree, key); };
+  try {
+    make_map(base, store, workers);
+    ADD_FAILURE() << "was accepted";
+  } catch (const CaseError& e) {
+    ASSERT_EQ(e.problems.size(), 1u);
+    EXPECT_EQ(e.problems[0].key, "map.across");
+    EXPECT_THAT(e.what(), HasSubstr("across = [\"-18 mm\", \"18 mm\"]"));
+    EXPECT_THAT(e.what(), HasSubstr("^~"));
   }
 }
 

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "app/campaign.hpp"
 #include "app/cli/case_options.hpp"
 #include "app/cli/commands.hpp"
 #include "app/exit_code.hpp"
@@ -49,7 +50,11 @@ void add_check(CLI::App& app, Action& action) {
           std::vector<Problem> warnings;
           std::optional<Scene> scene;
           const Case c = load_checked(case_file(path), o->overrides, &warnings, &scene);
-          if (o->json) list.push_back(check_json(c, *scene, warnings, bandwidth));
+          if (c.campaign.enabled) {
+            const std::string said = check_campaign(c);
+            if (o->json) list.push_back({{"case", path}, {"problems", nlohmann::ordered_json::array()}});
+            else fmt::print("{}\n", said);
+          } else if (o->json) list.push_back(check_json(c, *scene, warnings, bandwidth));
           else fmt::print("{}\n", check_report(c, *scene, warnings, bandwidth));
         } catch (const InputError& e) {
           code = exit_bad_input;

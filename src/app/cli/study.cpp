@@ -1,9 +1,10 @@
 #include <memory>
 
+#include "app/campaign.hpp"
 #include "app/cli/commands.hpp"
 #include "app/study_runs.hpp"
 
-/// The commands that run a case many times: study, map.
+/// The commands that run a case many times: study, map; and many cases: campaign.
 namespace ejecta {
 namespace {
 
@@ -94,6 +95,23 @@ void add_map(CLI::App& app, Action& action) {
       "command is given again; `ejecta study status DIR` says how far it is.\n\n"
       "Example:\n  ejecta map cases/paper/maps/10mm-cubic.toml");
   command->callback([o, &action] { action = [o] { return map_case(*o); }; });
+}
+
+void add_campaign(CLI::App& app, Action& action) {
+  CLI::App* command = app.add_subcommand(
+      "campaign", "Runs a programme of runs, jets, maps and studies, with one report ([campaign])");
+  auto o = std::make_shared<CampaignOptions>();
+  command->add_option("CASE", o->path, "Case file (.toml)")->required()->type_name("");
+  command->add_option("--out", o->out, "Directory (default: the name of the case with .campaign)")
+      ->type_name("DIR");
+  command->add_flag("--force", o->force, "Start anew in that directory");
+  command->add_flag("--print-commands", o->print_commands, "Run nothing; print the commands that are left");
+  command->add_flag("-q,--quiet", o->quiet, "Print nothing but errors");
+  command->footer(
+      "Parts that are done stay: a campaign that was stopped goes on when the same command is given "
+      "again.\n\n"
+      "Example:\n  ejecta campaign cases/paper/programme.toml");
+  command->callback([o, &action] { action = [o] { return run_campaign(*o); }; });
 }
 
 }  // namespace ejecta
