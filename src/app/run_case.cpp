@@ -6,10 +6,10 @@
 #include <iostream>
 #include <optional>
 
-#include "app/exit_code.hpp"
 #include "app/signals.hpp"
 #include "app/simulation.hpp"
 #include "base/error.hpp"
+#include "base/exit_code.hpp"
 #include "base/parallel.hpp"
 #include "case/extent.hpp"
 #include "jet/computed.hpp"

@@ -1,14 +1,21 @@
 #include <fmt/format.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
+#include <cerrno>
+#include <chrono>
+#include <csignal>
 #include <cstdio>
+#include <cstring>
 #include <filesystem>
 #include <optional>
+#include <thread>
+#include <utility>
 
-#include "app/exit_code.hpp"
 #include "app/signals.hpp"
 #include "app/study_runs.hpp"
 #include "base/error.hpp"
+#include "base/exit_code.hpp"
 #include "base/stopwatch.hpp"
 #include "case/node_path.hpp"
 #include "output/output_file.hpp"
@@ -79,6 +86,47 @@ bool print_commands(const TaskStore& store, std::span<const std::size_t> tasks) 
     finished = finished && !open && states[task] != TaskState::running;
   }
   return finished;
+}
+
+/// Runs this program with these words, which has the terminal; what asks us to stop asks it too. Its exit
+/// code.
+int run_this_program(std::vector<std::string> words, const SignalWatch& signals) {
+  std::vector<char*> argv;
+  for (std::string& w : words) argv.push_back(w.data());
+  argv.push_back(nullptr);
+  const std::string program = this_program().string();
+  const pid_t child = ::fork();
+  if (child < 0) throw Error(fmt::format("cannot start a process: {}", std::strerror(errno)));
+  if (child == 0) {
+    ::execv(program.c_str(), argv.data());
+    ::_exit(127);
+  }
+  bool asked = false;
+  int status = 0;
+  while (::waitpid(child, &status, WNOHANG) == 0) {
+    if (signals.stop_requested() && !asked) {
+      ::kill(child, SIGTERM);
+      asked = true;
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  }
+  if (asked) return exit_stopped;
+  return WIFEXITED(status) ? WEXITSTATUS(status) : exit_failure;
+}
+
+CampaignHands hands_for(const SignalWatch& signals, bool quiet) {
+  return {
+      .load = [](const std::string& path,
+                 const std::vector<std::string>& set) { return load_checked(path, set); },
+      .command = [&](std::vector<std::string> words) { return run_this_program(std::move(words), signals); },
+      .note =
+          [quiet](const std::string& line) {
+            if (!quiet) fmt::print(stderr, "{}\n", line);
+          },
+      .result =
+          [quiet](const std::string& line) {
+            if (!quiet) fmt::print("{}\n", line);
+          }};
 }
 
 }  // namespace
@@ -168,6 +216,25 @@ int map_case(const StudyOptions& o) {
     return exit_failure;
   }
   return exit_done;
+}
+
+int campaign_case(const std::string& path, CampaignOptions o) {
+  const Case c = load_checked(path);
+  if (!c.campaign.enabled)
+    throw InputError(
+        fmt::format("{} has no [campaign]\n  expected: the cases that belong to it\n"
+                    "  example:  [[campaign.part]] kind = \"run\", case = \"10mm-cubic.toml\"",
+                    path));
+  if (o.out.empty()) o.out = std::filesystem::path(path).stem().string() + ".campaign";
+  const SignalWatch signals;
+  const int end = run_campaign(c, o, hands_for(signals, o.quiet));
+  if (end == exit_stopped) fmt::print(stderr, "stopped; go on with the same command\n");
+  return end;
+}
+
+std::string campaign_checked(const Case& c) {
+  const SignalWatch signals;
+  return check_campaign(c, hands_for(signals, true));
 }
 
 int study_tasks(const std::string& directory, const std::vector<std::size_t>& tasks, int threads) {

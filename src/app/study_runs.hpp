@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "case/case.hpp"
+#include "study/campaign.hpp"
 #include "study/perform.hpp"
 
 namespace ejecta {
@@ -26,6 +27,9 @@ RunAnswer run_for_study(const Case& c, const RunRequest& request);
 // The commands. Each returns an ExitCode.
 int study_case(const StudyOptions& options);
 int map_case(const StudyOptions& options);
+int campaign_case(const std::string& path, CampaignOptions options);
+/// The parts of a campaign; throws InputError where one cannot be run.
+std::string campaign_checked(const Case& c);
 int study_tasks(const std::string& directory, const std::vector<std::size_t>& tasks, int threads);
 int study_tell(const std::string& directory);
 int study_stop(const std::string& directory);

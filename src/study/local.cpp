@@ -17,14 +17,12 @@
 #include <vector>
 
 #include "base/error.hpp"
+#include "base/exit_code.hpp"
 #include "base/stopwatch.hpp"
 #include "output/output_file.hpp"
 
 namespace ejecta {
 namespace {
-
-/// Exit codes of `ejecta study run-task` (app/exit_code.hpp).
-constexpr int kDone = 0, kStopped = 4;
 
 /// Short tasks share a process, whose start takes longer than they do: about this long, s, and so many.
 constexpr double kProcessTime = 1.0;
@@ -109,12 +107,12 @@ class Pool {
   void judge(const std::vector<std::size_t>& tasks, int status) {
     const int code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
     const int sign = WIFSIGNALED(status) ? WTERMSIG(status) : 0;
-    if (code == kDone) {
+    if (code == exit_done) {
       std::error_code none;
       std::filesystem::remove(store_.log(tasks.front()), none);  // there is nothing in it, or only notes
       return;
     }
-    if (code == kStopped || sign == SIGTERM || sign == SIGINT)
+    if (code == exit_stopped || sign == SIGTERM || sign == SIGINT)
       return;                       // with a checkpoint, or before its first step
     std::vector<std::size_t> open;  // about which nobody has said anything
     for (const std::size_t task : tasks)

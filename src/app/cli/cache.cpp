@@ -6,7 +6,7 @@
 #include <memory>
 
 #include "app/cli/commands.hpp"
-#include "app/exit_code.hpp"
+#include "base/exit_code.hpp"
 
 namespace ejecta {
 

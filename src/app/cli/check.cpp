@@ -5,10 +5,10 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "app/campaign.hpp"
 #include "app/cli/case_options.hpp"
 #include "app/cli/commands.hpp"
-#include "app/exit_code.hpp"
+#include "app/study_runs.hpp"
+#include "base/exit_code.hpp"
 #include "simulation/body_checks.hpp"
 #include "simulation/forecast.hpp"
 
@@ -51,7 +51,7 @@ void add_check(CLI::App& app, Action& action) {
           std::optional<Scene> scene;
           const Case c = load_checked(case_file(path), o->overrides, &warnings, &scene);
           if (c.campaign.enabled) {
-            const std::string said = check_campaign(c);
+            const std::string said = campaign_checked(c);
             if (o->json) list.push_back({{"case", path}, {"problems", nlohmann::ordered_json::array()}});
             else fmt::print("{}\n", said);
           } else if (o->json) list.push_back(check_json(c, *scene, warnings, bandwidth));

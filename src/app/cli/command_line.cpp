@@ -7,7 +7,7 @@
 #include <string_view>
 
 #include "app/cli/commands.hpp"
-#include "app/exit_code.hpp"
+#include "base/exit_code.hpp"
 #include "base/text.hpp"
 #include "output/build_info.hpp"
 

@@ -7,7 +7,7 @@
 
 #include "app/cli/commands.hpp"
 #include "app/cli/documents.hpp"
-#include "app/exit_code.hpp"
+#include "base/exit_code.hpp"
 #include "base/text.hpp"
 #include "case/template.hpp"
 

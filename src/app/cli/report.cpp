@@ -5,7 +5,7 @@
 #include <memory>
 
 #include "app/cli/commands.hpp"
-#include "app/exit_code.hpp"
+#include "base/exit_code.hpp"
 #include "output/report.hpp"
 
 namespace ejecta {

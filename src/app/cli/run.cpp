@@ -5,9 +5,9 @@
 
 #include "app/cli/case_options.hpp"
 #include "app/cli/commands.hpp"
-#include "app/exit_code.hpp"
 #include "app/simulation.hpp"
 #include "base/error.hpp"
+#include "base/exit_code.hpp"
 #include "bench/bench.hpp"
 
 /// The commands that compute: run, plan, jet, bench.

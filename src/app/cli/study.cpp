@@ -1,6 +1,5 @@
 #include <memory>
 
-#include "app/campaign.hpp"
 #include "app/cli/commands.hpp"
 #include "app/study_runs.hpp"
 
@@ -101,7 +100,8 @@ void add_campaign(CLI::App& app, Action& action) {
   CLI::App* command = app.add_subcommand(
       "campaign", "Runs a programme of runs, jets, maps and studies, with one report ([campaign])");
   auto o = std::make_shared<CampaignOptions>();
-  command->add_option("CASE", o->path, "Case file (.toml)")->required()->type_name("");
+  auto path = std::make_shared<std::string>();
+  command->add_option("CASE", *path, "Case file (.toml)")->required()->type_name("");
   command->add_option("--out", o->out, "Directory (default: the name of the case with .campaign)")
       ->type_name("DIR");
   command->add_flag("--force", o->force, "Start anew in that directory");
@@ -111,7 +111,7 @@ void add_campaign(CLI::App& app, Action& action) {
       "Parts that are done stay: a campaign that was stopped goes on when the same command is given "
       "again.\n\n"
       "Example:\n  ejecta campaign cases/paper/programme.toml");
-  command->callback([o, &action] { action = [o] { return run_campaign(*o); }; });
+  command->callback([path, o, &action] { action = [path, o] { return campaign_case(*path, *o); }; });
 }
 
 }  // namespace ejecta

@@ -6,8 +6,8 @@
 
 #include "app/cli/case_options.hpp"
 #include "app/cli/commands.hpp"
-#include "app/exit_code.hpp"
 #include "app/simulation.hpp"
+#include "base/exit_code.hpp"
 #include "simulation/body_checks.hpp"
 #include "validation/validation.hpp"
 

@@ -1,26 +1,16 @@
-#include "app/campaign.hpp"
+#include "study/campaign.hpp"
 
 #include <fmt/format.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
-#include <cerrno>
-#include <chrono>
-#include <csignal>
-#include <cstdio>
-#include <cstring>
 #include <filesystem>
 #include <nlohmann/json.hpp>
-#include <thread>
 
-#include "app/exit_code.hpp"
-#include "app/signals.hpp"
 #include "base/error.hpp"
+#include "base/exit_code.hpp"
 #include "case/load.hpp"
 #include "output/output_file.hpp"
 #include "output/report.hpp"
 #include "output/verdict.hpp"
-#include "simulation/body_checks.hpp"
 
 namespace ejecta {
 namespace {
@@ -33,9 +23,9 @@ bool is_a_run(CampaignKind kind) { return kind == CampaignKind::run || kind == C
 /// One command of a campaign and the directory that it fills.
 class CampaignPart {
  public:
-  CampaignPart(const Case& campaign, std::size_t number, const fs::path& out)
+  CampaignPart(const Case& campaign, std::size_t number, const fs::path& out, const CampaignHands& hands)
       : spec_(campaign.campaign.parts[number]), file_(beside_case(campaign, spec_.file)) {
-    const Case c = load_checked(file_, spec_.set);
+    const Case c = hands.load(file_, spec_.set);
     title_ = !spec_.title.empty() ? spec_.title : !c.run.title.empty() ? c.run.title : c.path;
     if (spec_.kind == CampaignKind::map && !c.map.enabled) refuse(number, "has no [map]");
     if (spec_.kind == CampaignKind::study && !c.study.enabled) refuse(number, "has no [study]");
@@ -122,32 +112,6 @@ class CampaignPart {
   fs::path directory_;
 };
 
-/// Runs this program with these words, which has the terminal; what asks us to stop asks it too. Its exit
-/// code.
-int run_this_program(std::vector<std::string> words, const SignalWatch& signals) {
-  std::vector<char*> argv;
-  for (std::string& w : words) argv.push_back(w.data());
-  argv.push_back(nullptr);
-  const std::string program = fs::read_symlink("/proc/self/exe").string();
-  const pid_t child = ::fork();
-  if (child < 0) throw Error(fmt::format("cannot start a process: {}", std::strerror(errno)));
-  if (child == 0) {
-    ::execv(program.c_str(), argv.data());
-    ::_exit(127);
-  }
-  bool asked = false;
-  int status = 0;
-  while (::waitpid(child, &status, WNOHANG) == 0) {
-    if (signals.stop_requested() && !asked) {
-      ::kill(child, SIGTERM);
-      asked = true;
-    }
-    std::this_thread::sleep_for(std::chrono::milliseconds(20));
-  }
-  if (asked) return exit_stopped;
-  return WIFEXITED(status) ? WEXITSTATUS(status) : exit_failure;
-}
-
 std::string shell_line(const std::vector<std::string>& words) {
   std::string line;
   for (const std::string& w : words) {
@@ -159,24 +123,17 @@ std::string shell_line(const std::vector<std::string>& words) {
 
 }  // namespace
 
-std::string check_campaign(const Case& c) {
+std::string check_campaign(const Case& c, const CampaignHands& hands) {
   std::string text = fmt::format("{}: {} parts\n", c.path, c.campaign.parts.size());
   for (std::size_t n = 0; n < c.campaign.parts.size(); ++n)
-    text += "  " + shell_line(CampaignPart(c, n, "").words(true)) + "\n";
+    text += "  " + shell_line(CampaignPart(c, n, "", hands).words(true)) + "\n";
   return text;
 }
 
-int run_campaign(const CampaignOptions& o) {
-  const Case c = load_checked(o.path);
-  if (!c.campaign.enabled)
-    throw InputError(
-        fmt::format("{} has no [campaign]\n  expected: the cases that belong to it\n"
-                    "  example:  [[campaign.part]] kind = \"run\", case = \"10mm-cubic.toml\"",
-                    o.path));
-  const std::string name = fs::path(o.path).stem().string();
-  const fs::path out = o.out.empty() ? name + ".campaign" : o.out;
+int run_campaign(const Case& c, const CampaignOptions& o, const CampaignHands& hands) {
+  const std::string name = fs::path(c.path).stem().string();
   std::vector<CampaignPart> parts;
-  for (std::size_t n = 0; n < c.campaign.parts.size(); ++n) parts.emplace_back(c, n, out);
+  for (std::size_t n = 0; n < c.campaign.parts.size(); ++n) parts.emplace_back(c, n, o.out, hands);
   std::vector<std::string> problems(parts.size());
 
   const auto report = [&] {
@@ -188,41 +145,39 @@ int run_campaign(const CampaignOptions& o) {
     }
     const std::string title = c.campaign.title.empty() ? name : c.campaign.title;
     const Json campaign{{"title", title}, {"kind", "campaign"}, {"parts", entries}};
-    output::write_file(out / "result.json", campaign.dump(2) + "\n");
-    output::write_campaign_report(campaign, runs, out / "report.html");
+    fs::create_directories(o.out);
+    output::write_file(o.out / "result.json", campaign.dump(2) + "\n");
+    output::write_campaign_report(campaign, runs, o.out / "report.html");
   };
 
-  int code = exit_done;
-  SignalWatch signals;
+  int failed = exit_done;
   for (std::size_t n = 0; n < parts.size(); ++n) {
     if (parts[n].is_done() && !o.force) continue;
     std::vector<std::string> words = parts[n].words(o.force);
     if (o.print_commands) {
-      fmt::print("{}\n", shell_line(words));
+      hands.result(shell_line(words));
       continue;
     }
-    fs::create_directories(out);
-    if (!o.quiet) fmt::print(stderr, "part {} of {}: {}\n", n + 1, parts.size(), shell_line(words));
+    fs::create_directories(o.out);
+    hands.note(fmt::format("part {} of {}: {}", n + 1, parts.size(), shell_line(words)));
     if (o.quiet) words.push_back("--quiet");
-    const int end = run_this_program(words, signals);
+    const int end = hands.command(words);
     if (end == exit_stopped) {
-      if (fs::exists(out / "result.json") || parts[n].is_done()) report();
-      fmt::print(stderr, "stopped; go on with the same command\n");
+      report();
       return exit_stopped;
     }
     if (end != exit_done && end != exit_undecided) {
       problems[n] = fmt::format("ended with exit code {}", end);
-      fmt::print(stderr, "part {} {}; the others go on\n", n + 1, problems[n]);
-      if (code == exit_done) code = end;
+      hands.note(fmt::format("part {} {}; the others go on", n + 1, problems[n]));
+      if (failed == exit_done) failed = end;
     }
     report();
   }
   if (o.print_commands) return exit_done;
-  fs::create_directories(out);
   report();
-  if (!o.quiet)
-    fmt::print("results: {}\nreport:  {}\n", (out / "result.json").string(), (out / "report.html").string());
-  return code;
+  hands.result(fmt::format("results: {}\nreport:  {}", (o.out / "result.json").string(),
+                           (o.out / "report.html").string()));
+  return failed;
 }
 
 }  // namespace ejecta
