@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <thread>
@@ -40,6 +41,22 @@ TEST(Run, SideBySideGivesTheBitsOfEachAlone) {
         [&, n] { together[n] = figures_of(run(short_ejection(pressures[n]), {.threads = int(n) + 1})); });
   for (std::thread& t : threads) t.join();
   for (std::size_t n = 0; n < pressures.size(); ++n) EXPECT_EQ(alone[n], together[n]) << pressures[n];
+}
+
+/// At once, more than there are cores. EJECTA_SIDE_BY_SIDE: how many.
+TEST(Run, SideBySideInOneProcessByTheDozen) {
+  const char* const wanted = std::getenv("EJECTA_SIDE_BY_SIDE");
+  const std::size_t count = wanted ? std::strtoul(wanted, nullptr, 10) : 12;
+  constexpr std::size_t kKinds = 4;
+  const auto pressure = [](std::size_t n) { return 500.0 + 50.0 * static_cast<double>(n % kKinds); };
+  std::vector<nlohmann::ordered_json> alone, together(count);
+  for (std::size_t n = 0; n < kKinds; ++n) alone.push_back(figures_of(run(short_ejection(pressure(n)))));
+  std::vector<std::thread> threads;
+  for (std::size_t n = 0; n < count; ++n)
+    threads.emplace_back(
+        [&, n] { together[n] = figures_of(run(short_ejection(pressure(n)), {.threads = 1})); });
+  for (std::thread& t : threads) t.join();
+  for (std::size_t n = 0; n < count; ++n) EXPECT_EQ(alone[n % kKinds], together[n]) << n;
 }
 
 TEST(Run, IsWatchedAndStopped) {
