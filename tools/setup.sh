@@ -2,7 +2,7 @@
 # tools/setup.sh [PACKAGE...]: installs what the build needs from Debian's packages, and the packages named, if
 # anything is missing.
 set -euo pipefail
-packages=(build-essential cmake ninja-build ccache git python3 libeigen3-dev libfmt-dev libtoml11-dev libcli11-dev
+packages=(build-essential cmake ninja-build ccache git python3 python3-dev python3-numpy pybind11-dev libeigen3-dev libfmt-dev libtoml11-dev libcli11-dev
           nlohmann-json3-dev libhdf5-dev zlib1g-dev libgtest-dev libgmock-dev librapidcheck-dev nodejs npm "$@")
 missing=()
 for p in "${packages[@]}"; do

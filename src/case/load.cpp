@@ -113,8 +113,8 @@ Node case_tree(const std::string& path, const std::vector<std::string>& override
 }
 
 Case resolve_case(const Node& root, const std::string& name, std::vector<Problem>& problems,
-                  const FurtherChecks& further) {
-  return resolve(root, name, false, problems, nullptr, further);
+                  const FurtherChecks& further, std::vector<Problem>* warnings) {
+  return resolve(root, name, false, problems, warnings, further);
 }
 
 std::string folder_of(const Case& c) { return std::filesystem::path(c.path).parent_path().string(); }

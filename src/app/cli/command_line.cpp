@@ -8,6 +8,7 @@
 
 #include "app/cli/commands.hpp"
 #include "app/exit_code.hpp"
+#include "base/parallel.hpp"
 #include "base/text.hpp"
 #include "output/build_info.hpp"
 
@@ -69,6 +70,7 @@ void print_input_error(const InputError& e) {
 }
 
 int run_command_line(int argc, const char* const* argv) {
+  flush_denormals();
   CLI::App app(
       "Ejecta predicts which particles an air-jet sorter ejects: it computes the pulsed air jet, the "
       "particles\n"
