@@ -22,6 +22,12 @@ Case parse_case(const std::string& text, const std::string& name,
                 const std::vector<std::string>& overrides = {}, std::vector<Problem>* warnings = nullptr,
                 const FurtherChecks& further = {});
 
+/// The same for who shows a case that may be wrong: as far as it can be read, with what is wrong in
+/// `problems`.
+Case examine_case(const std::string& text, const std::string& name, const std::vector<std::string>& overrides,
+                  std::vector<Problem>& problems, std::vector<Problem>* warnings = nullptr,
+                  const FurtherChecks& further = {});
+
 /// The tree of a case file with `overrides` applied, for those who resolve many variations of it. Throws
 /// InputError with all that is no TOML.
 Node case_tree(const std::string& path, const std::vector<std::string>& overrides = {});
