@@ -191,7 +191,9 @@ struct Workbench::Parts {
   }
 
   void add_cases() {
-    server.Get("/api/schema", [](const Request&, Response& response) { answer(response, form_of_schema()); });
+    server.Get("/api/schema", [schema = form_of_schema().dump()](const Request&, Response& response) {
+      response.set_content(schema, "application/json");
+    });
     server.Get("/api/cases", [this](const Request&, Response& response) {
       answer(response, {{"folder", folder.path().string()}, {"cases", folder.content().cases}});
     });
