@@ -33,8 +33,8 @@ export class CaseView {
     this.saveButton.addEventListener("click", () => void this.save());
     this.startButton.addEventListener("click", () => void this.start());
     this.element = h("section", { class: "case", "aria-labelledby": "case-name" },
-      h("header", { class: "bar" }, h("h1", { id: "case-name" }, name), this.status, this.saveButton, this.startButton),
-      this.problems,
+      h("div", { class: "head" },
+        h("header", { class: "bar" }, h("h1", { id: "case-name" }, name), this.status, this.saveButton, this.startButton), this.problems),
       h("div", { class: "sides" }, this.form.element,
         h("div", { class: "text-side" }, h("div", { class: "editor" }, this.lines, this.text), this.summary)));
     addEventListener("beforeunload", (event) => {
@@ -100,7 +100,8 @@ export class CaseView {
     const count = this.text.value.split("\n").length;
     this.lines.replaceChildren(...[...Array(count).keys()].map((n) => h("span", { class: faulty.get(n + 1) ?? "" }, String(n + 1))));
     if (judgement.values) this.form.show(judgement.values, judgement.problems);
-    this.summary.replaceChildren(...(judgement.drawing ? [drawingView(judgement.drawing)] : []), ...this.facts(judgement));
+    this.summary.classList.toggle("stale", !judgement.check); // until the faults are mended: what it was before
+    if (judgement.check) this.summary.replaceChildren(...(judgement.drawing ? [drawingView(judgement.drawing)] : []), ...this.facts(judgement));
   }
 
   private problem(p: Problem): HTMLElement {
