@@ -1,9 +1,12 @@
 """Cases: what the user wrote, key by key."""
 
+from __future__ import annotations
+
 import functools
 import json
 import os
 from pathlib import Path
+from typing import Any, Mapping, Union
 
 from . import _core
 from .quantity import Array, Quantity
@@ -98,14 +101,14 @@ class Case:
     the other. `ejecta.keys` has all keys with their help.
     """
 
-    def __init__(self, tables):
+    def __init__(self, tables: Mapping[str, Any]) -> None:
         solver = str(tables.get("flow", {}).get("solver", "incompressible"))
         self._tree = _core.CaseTree(_Schema(solver).document(tables), "Case({...})")
-        self._file = None
-        self._changes = {}  # path -> TOML, as --set takes it
+        self._file: str | None = None
+        self._changes: dict[str, str | None] = {}  # path -> TOML, as --set takes it
 
     @classmethod
-    def load(cls, path):
+    def load(cls, path: str | os.PathLike[str]) -> Case:
         """The case of a file, or the shipped case of that name."""
         case = cls.__new__(cls)
         case._tree = _core.CaseTree.load(os.fspath(path))
@@ -113,50 +116,50 @@ class Case:
         case._changes = {}
         return case
 
-    def copy(self):
+    def copy(self) -> Case:
         """A case of its own with the same values."""
         other = Case.__new__(Case)
         other._tree, other._file, other._changes = self._tree.copy(), self._file, dict(self._changes)
         return other
 
-    def __getitem__(self, path):
+    def __getitem__(self, path: str) -> Any:
         """The value of a key in SI units, with `unit`; a word or formula as text."""
         value, unit = self._tree.get(path)
         return _with_unit(value, unit)
 
-    def __setitem__(self, path, value):
+    def __setitem__(self, path: str, value: Any) -> None:
         self.update({path: value})
 
-    def update(self, values):
+    def update(self, values: Mapping[str, Any]) -> None:
         """Sets several keys at once: all, or none where one is wrong."""
         schema = _Schema(self._tree.solver())
         changes = {path: schema.toml(value, path) for path, value in values.items()}
         self._tree.set([(path, toml, f"case[{json.dumps(path)}]") for path, toml in changes.items()])
         self._changes.update(changes)
 
-    def __delitem__(self, path):
+    def __delitem__(self, path: str) -> None:
         """Back to the default."""
         self._tree.remove(path)
         self._changes[path] = None
 
-    def toml(self):
+    def toml(self) -> str:
         """The case as a file says it, resolved: defaults as comments, names of files absolute."""
         return self._tree.toml()
 
-    def save(self, path):
+    def save(self, path: str | os.PathLike[str]) -> None:
         """Writes it as a case file."""
         Path(path).write_text(self.toml())
 
     @property
-    def title(self):
+    def title(self) -> str | None:
         return self["run.title"]
 
     @property
-    def name(self):
+    def name(self) -> str:
         """Of its file."""
         return self._tree.name
 
-    def shape(self, body=""):
+    def shape(self, body: str = "") -> _core.Shape:
         """The solid of the body of that name; of the first without one."""
         return _core.shape_of(self._tree, body)
 
@@ -164,14 +167,17 @@ class Case:
         return f"<ejecta.Case {self.name}: {self.title}>" if self.title else f"<ejecta.Case {self.name}>"
 
 
-def as_case(case):
+CaseLike = Union[Case, str, "os.PathLike[str]", Mapping[str, Any]]
+
+
+def as_case(case: CaseLike) -> Case:
     """A case from a Case, a path or a dict."""
     if isinstance(case, Case):
         return case
-    return Case(case) if isinstance(case, dict) else Case.load(case)
+    return Case(case) if isinstance(case, Mapping) else Case.load(case)
 
 
-def shape(**keys):
+def shape(**keys: Any) -> _core.Shape:
     """The solid that the keys of a [[body]] describe, with their units.
 
         rock = ejecta.shape(shape="mesh", file="rock.stl", scale=1e-3)

@@ -7,6 +7,14 @@ from . import _core
 class Key(str):
     """The path of a key, with what is known of it: help, takes, default, unit, source, example, words."""
 
+    help: str
+    takes: str
+    default: str
+    unit: str
+    source: str
+    example: str
+    words: "dict[str, str]"
+
     def __new__(cls, section, entry):
         self = super().__new__(cls, f"{section}.{entry['name']}")
         self.help, self.takes, self.default = entry["help"], entry["takes"], entry["default"]

@@ -1,5 +1,7 @@
 """Running cases: in this process, in one of their own, many of them."""
 
+from __future__ import annotations
+
 import json
 import logging
 import math
@@ -9,9 +11,10 @@ import signal
 import subprocess
 import time
 from pathlib import Path
+from typing import Any, Callable, Sequence
 
 from . import _core
-from .case import as_case
+from .case import CaseLike, as_case
 from .errors import DivergedError, Error, InputError
 from .quantity import Array
 from .run_files import Run, Table
@@ -86,14 +89,14 @@ class Result:
         """The files of the run; None where it wrote none."""
         return Run(self.directory) if self.directory else None
 
-    def histories(self):
+    def histories(self) -> list[str]:
         """Names that `history` takes."""
         return self.run.histories() if self.directory else sorted(self._histories)
 
-    def history(self, name):
+    def history(self, name: str) -> Table:
         return self.run.history(name) if self.directory else self._histories[name]
 
-    def margin(self, body=None):
+    def margin(self, body: str | None = None) -> float:
         """By how much (m) a body clears the edge of the dividing plate, negative where it falls short: of the flight that
         the air gave it. Of the first body unless one is named; NaN where it did not get past the plate."""
         for b in self.bodies:
@@ -105,7 +108,7 @@ class Result:
         return f"<ejecta.Result {self.end}: {self.verdict or f'at {self.time:.6g} s'}>"
 
 
-def check(case):
+def check(case: CaseLike) -> Check:
     """Checks a case (a Case, a file or a dict) and says what a run of it will be; runs nothing. Raises CaseError."""
     return Check(*as_case(case)._tree.check())
 
@@ -130,7 +133,8 @@ def _run(kind, case, out, overwrite, resume, threads, callback, fields):
     return Result(raw, directory)
 
 
-def run(case, *, out=None, overwrite=False, resume=False, threads=0, callback=None, fields=False):
+def run(case: CaseLike, *, out: str | os.PathLike[str] | None = None, overwrite: bool = False, resume: bool = False,
+        threads: int = 0, callback: Callable[[_core.Progress], object] | None = None, fields: bool = False) -> Result:
     """Runs a case to its end in this process. The same bits as `ejecta run`.
 
     out: directory for its files, as the command writes them; None: nothing is written, histories are in the Result.
@@ -144,7 +148,8 @@ def run(case, *, out=None, overwrite=False, resume=False, threads=0, callback=No
     return _run("run", case, out, overwrite, resume, threads, callback, fields)
 
 
-def jet(case, *, out=None, overwrite=False, resume=False, threads=0, callback=None):
+def jet(case: CaseLike, *, out: str | os.PathLike[str] | None = None, overwrite: bool = False, resume: bool = False,
+        threads: int = 0, callback: Callable[[_core.Progress], object] | None = None) -> Result:
     """Computes only the jet of a case and stores it for later runs, as `ejecta jet` does."""
     return _run("jet", case, out, overwrite, resume, threads, callback, False)
 
@@ -175,7 +180,7 @@ class Job:
         self.directory = Path(directory)
         self._process = process
 
-    def progress(self):
+    def progress(self) -> dict[str, Any]:
         """How far it is: state ("starting", "running", "done", "stopped", "diverged", "failed"), and once it has begun
         fraction, time_s, end_time_s, step, wall_time_s, eta_s."""
         running = self.running  # asked first: it may end in between, and then it has said so
@@ -186,12 +191,12 @@ class Job:
         return said
 
     @property
-    def running(self):
+    def running(self) -> bool:
         if self._process:
             return self._process.poll() is None
         return _core.is_running(str(self.directory))
 
-    def stop(self):
+    def stop(self) -> None:
         """Asks it to stop with a checkpoint, and waits until it has."""
         if self._process:
             self._process.terminate()
@@ -201,7 +206,7 @@ class Job:
             while self.running:
                 time.sleep(0.02)
 
-    def wait(self):
+    def wait(self) -> Result:
         """Waits for its end. Raises what went wrong there."""
         while self.running:
             time.sleep(0.05)
@@ -209,7 +214,7 @@ class Job:
             raise _error_of(self._process.returncode, _log_of(self.directory).read_text())
         return self.result()
 
-    def result(self):
+    def result(self) -> Result:
         """Of a run that has ended."""
         said = self.progress()
         file = self.directory / "result.json"
@@ -239,7 +244,8 @@ def _error_of(code, words):
     return kind(words.strip().removeprefix("error: "))
 
 
-def submit(case, *, out, overwrite=False, resume=False, threads=0):
+def submit(case: CaseLike, *, out: str | os.PathLike[str], overwrite: bool = False, resume: bool = False,
+           threads: int = 0) -> Job:
     """Runs a case in a process of its own, which outlives this one: a Job with progress(), stop() and wait(). What the
     process says stands in OUT.log. Raises CaseError before anything is started."""
     case, directory = as_case(case), Path(out)
@@ -290,13 +296,14 @@ def _study(kind, case, out, at_once, overwrite):
     return Study(directory)
 
 
-def study(case, *, out=None, at_once=0, overwrite=False):
+def study(case: CaseLike, *, out: str | os.PathLike[str] | None = None, at_once: int = 0, overwrite: bool = False) -> Study:
     """Runs a case many times, as its [study] says, in processes of their own. One that was stopped by ^C goes on when it
     is called again."""
     return _study("study", case, out, at_once, overwrite)
 
 
-def map(case, *, out=None, at_once=0, overwrite=False):  # noqa: A001 (the name that the command has)
+def map(case: CaseLike, *, out: str | os.PathLike[str] | None = None, at_once: int = 0,  # noqa: A001 (the name that the command has)
+        overwrite: bool = False) -> Study:
     """Finds the places around the jet from which a particle is ejected, as [map] says."""
     return _study("map", case, out, at_once, overwrite)
 
@@ -308,10 +315,10 @@ class Margin:
         margin("5 bar gauge", "6 ms")       # or numbers in SI units; negative: not ejected
     """
 
-    def __init__(self, case, keys, *, body=None, threads=0):
+    def __init__(self, case: CaseLike, keys: Sequence[str], *, body: str | None = None, threads: int = 0) -> None:
         self.case, self.keys, self.body, self.threads = as_case(case).copy(), list(keys), body, threads
 
-    def __call__(self, *values):
+    def __call__(self, *values: Any) -> float:
         if len(values) != len(self.keys):
             raise TypeError(f"{len(values)} values for the keys {', '.join(self.keys)}")
         self.case.update(dict(zip(self.keys, values)))

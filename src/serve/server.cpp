@@ -15,6 +15,8 @@
 #include "case/edit_text.hpp"
 #include "case/template.hpp"
 #include "output/output_file.hpp"
+#include "output/report.hpp"
+#include "output/results_table.hpp"
 #include "serve/case_desk.hpp"
 #include "serve/folder.hpp"
 #include "serve/guard.hpp"
@@ -31,6 +33,7 @@ using httplib::Response;
 constexpr int kThreads = 48;  ///< connections that are served at once
 constexpr int kStreams = 32;  ///< of them with live events, each of which holds a thread
 constexpr std::size_t kLargestText = 1 << 20, kLargestUpload = 64 << 20;
+constexpr std::size_t kMostCompared = 50;
 constexpr auto kBetweenLooks = std::chrono::milliseconds(500);
 
 /// What is sent when a file of the folder is asked for.
@@ -71,7 +74,7 @@ struct Workbench::Parts {
   int port;
   Guard guard;
   double bandwidth = measured_bandwidth();
-  std::atomic<int> streams{0};
+  std::atomic<int> streams{0}, temporary_files{0};
 
   // The runs as they were last looked at; who waits for events is woken when something has changed.
   std::mutex mutex;
@@ -86,6 +89,7 @@ struct Workbench::Parts {
     set_limits();
     set_guard();
     add_pages();
+    add_comparisons();
     add_cases();
     add_runs();
     looks = std::thread([this] { keep_looking(); });
@@ -188,6 +192,55 @@ struct Workbench::Parts {
       response.set_header("Content-Security-Policy", "sandbox allow-scripts allow-downloads");
       response.set_content(output::read_file(file), type);
     });
+  }
+
+  /// Runs laid over each other in one page, and their results as tables:
+  /// /runs/compare.html?run=a.run&run=b.run
+  void add_comparisons() {
+    const auto chosen = [this](const Request& request) {
+      std::vector<std::filesystem::path> all;
+      const auto [begin, end] = request.params.equal_range("run");
+      for (auto it = begin; it != end; ++it) {
+        all.push_back(folder.inside(it->second));
+        if (!std::filesystem::exists(all.back() / "result.json"))
+          throw InputError(fmt::format("{} has no result", it->second));
+      }
+      if (all.empty() || all.size() > kMostCompared)
+        throw InputError(fmt::format("choose up to {} runs", kMostCompared));
+      return all;
+    };
+    server.Get("/runs/compare.html", [this, chosen](const Request& request, Response& response) {
+      response.set_header("Content-Security-Policy", "sandbox allow-scripts allow-downloads");
+      response.set_content(written([&](const auto& file) { output::write_report(chosen(request), file); }),
+                           "text/html; charset=utf-8");
+    });
+    server.Get("/runs/results.csv", [chosen](const Request& request, Response& response) {
+      response.set_header("Content-Disposition", "attachment; filename=\"results.csv\"");
+      response.set_content(output::csv_text(output::results_table(chosen(request))),
+                           "text/csv; charset=utf-8");
+    });
+    server.Get("/runs/results.xlsx", [this, chosen](const Request& request, Response& response) {
+      const std::string book =
+          written([&](const auto& file) { output::write_workbook(chosen(request), file); });
+      response.set_header("Content-Disposition", "attachment; filename=\"results.xlsx\"");
+      response.set_content(book, "application/vnd.openxmlformats-officedocument.spreadsheetml.sheet");
+    });
+  }
+
+  /// What write(file) puts into a file that is there for a moment only.
+  template <class Write>
+  std::string written(const Write& write) {
+    const auto file = std::filesystem::temp_directory_path() /
+                      fmt::format("ejecta-{}-{}", guard.token().substr(0, 16), ++temporary_files);
+    struct Removed {
+      std::filesystem::path file;
+      ~Removed() {
+        std::error_code none;
+        std::filesystem::remove(file, none);
+      }
+    } const removed{file};
+    write(file);
+    return output::read_file(file);
   }
 
   void add_cases() {

@@ -261,6 +261,19 @@ class Runs(ServerCase):
         self.assertEqual(self.server.post("/api/start", case="ball.toml")[1], {"run": "ball-2.run"})
         self.server.wait("ball-2.run", ("done",))
 
+    def test_results_together(self):
+        self.server.post("/api/start", case="ball.toml")
+        self.server.wait("ball.run", ("done",))
+        status, headers, page = self.server.ask("GET", "/runs/compare.html?run=ball.run&run=ball.run")
+        self.assertEqual(status, 200)
+        self.assertIn("sandbox", headers["Content-Security-Policy"])
+        status, _, table = self.server.ask("GET", "/runs/results.csv?run=ball.run")
+        self.assertEqual(len(table.decode().splitlines()), 2)
+        status, _, book = self.server.ask("GET", "/runs/results.xlsx?run=ball.run")
+        self.assertTrue((status, book[:2]) == (200, b"PK") or (status == 400 and b"built without" in book))
+        for query in ("", "?run=../x", "?run=ball.toml", "?" + "run=ball.run&" * 60):
+            self.assertEqual(self.server.ask("GET", "/runs/results.csv" + query)[0], 400)
+
     def test_many_clicks_are_one_run(self):
         answers = []
         threads = [threading.Thread(target=lambda: answers.append(self.server.post("/api/start", case="slow.toml")[0])) for _ in range(8)]

@@ -10,9 +10,15 @@ const WORDS: Record<RunState["state"], string> = {
 
 export class RunView {
   private readonly body = h("tbody", {});
+  private readonly chosen = new Set<string>();
+  private readonly together = [["Compare", "compare.html", 2], ["CSV", "results.csv", 1], ["Excel", "results.xlsx", 1]].map(([words, file, least]) => {
+    const b = h("button", { type: "button", disabled: true, "data-least": least }, String(words));
+    b.addEventListener("click", () => open(`/runs/${file}?${[...this.chosen].map((name) => `run=${encodeURIComponent(name)}`).join("&")}`, "_blank", "noopener"));
+    return b;
+  });
   private readonly note = h("p", { class: "note", role: "status" });
   readonly element = h("section", { class: "runs", "aria-labelledby": "runs-name" },
-    h("header", { class: "bar" }, h("h1", { id: "runs-name" }, "Runs")), this.note,
+    h("header", { class: "bar" }, h("h1", { id: "runs-name" }, "Runs"), ...this.together), this.note,
     h("div", { class: "table" }, h("table", {},
       h("thead", {}, h("tr", {}, ...["Run", "State", "Progress", "Verdict", ""].map((name) => h("th", { scope: "col" }, name || h("span", { class: "unseen" }, "Actions"))))),
       this.body)));
@@ -22,6 +28,7 @@ export class RunView {
     const busy = (run: RunState): number => (run.state === "running" || run.state === "starting" ? 0 : 1);
     const ordered = [...runs].sort((a, b) => busy(a) - busy(b));
     const known = new Set(runs.map((run) => run.name));
+    for (const name of this.chosen) if (!known.has(name)) this.chosen.delete(name);
     for (const [name, { row }] of this.rows)
       if (!known.has(name)) {
         row.remove();
@@ -45,11 +52,21 @@ export class RunView {
 
   private row(run: RunState): HTMLTableRowElement {
     return h("tr", { "data-run": run.name, class: run.state },
-      h("th", { scope: "row" }, run.name, run.title ? h("span", { class: "title" }, run.title) : null),
+      h("th", { scope: "row" }, run.state === "done" ? this.choice(run.name) : null, run.name, run.title ? h("span", { class: "title" }, run.title) : null),
       h("td", { class: "state" }, WORDS[run.state]),
       h("td", {}, this.progress(run)),
       h("td", {}, run.verdict ? unbroken(run.verdict) : run.said ? h("details", {}, h("summary", {}, "what it said"), h("pre", { tabindex: 0 }, run.said)) : ""),
       h("td", { class: "actions" }, ...this.actions(run)));
+  }
+
+  private choice(name: string): HTMLElement {
+    const box = h("input", { type: "checkbox", "aria-label": `Choose ${name}`, checked: this.chosen.has(name) });
+    box.addEventListener("change", () => {
+      if (box.checked) this.chosen.add(name);
+      else this.chosen.delete(name);
+      for (const b of this.together) b.disabled = this.chosen.size < Number(b.dataset["least"]);
+    });
+    return box;
   }
 
   private progress(run: RunState): HTMLElement | string {

@@ -6,8 +6,10 @@
 #include "app/cli/commands.hpp"
 #include "app/exit_code.hpp"
 #include "output/output_file.hpp"
+#include "output/paraview_view.hpp"
 #include "output/results_table.hpp"
 
+/// The commands that hand runs to other programs: table, paraview.
 namespace ejecta {
 
 void add_table(CLI::App& app, Action& action) {
@@ -37,6 +39,22 @@ void add_table(CLI::App& app, Action& action) {
                         "  example:  --out results.xlsx",
                         o->out.string()));
       fmt::print("{}\n", o->out.string());
+      return int{exit_done};
+    };
+  });
+}
+
+void add_paraview(CLI::App& app, Action& action) {
+  CLI::App* command =
+      app.add_subcommand("paraview", "Writes a view of a run for ParaView: air, bodies, colours, camera");
+  auto run = std::make_shared<std::filesystem::path>();
+  command->add_option("DIR", *run, "Run directory")->required()->type_name("");
+  command->footer("Example:\n  ejecta paraview tutorial.run\n  paraview --script=tutorial.run/view.py");
+  command->callback([run, &action] {
+    action = [run] {
+      const std::filesystem::path file = *run / "view.py";
+      output::write_file(file, output::paraview_view(*run));
+      fmt::print("{}\nopen it with  paraview --script={}\n", file.string(), file.string());
       return int{exit_done};
     };
   });
