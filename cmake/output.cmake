@@ -46,6 +46,7 @@ else()
   file(WRITE ${report_page} "")
   file(WRITE ${report_page}.hpp "")
   file(WRITE ${workbench_page} "")
+  file(WRITE ${workbench_page}.hpp "")
 endif()
 set_source_files_properties(${PROJECT_SOURCE_DIR}/src/output/report_page.cpp PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON
   COMPILE_DEFINITIONS "EJECTA_REPORT_PAGE=\"${report_page}\";EJECTA_REPORT_PAGE_SUM=\"${report_page}.hpp\""

@@ -12,10 +12,9 @@
 namespace ejecta::output {
 namespace {
 
-constexpr const char* kView = R"(
+constexpr const char* kView = R"py(
 from paraview.simple import *
 
-paraview.simple._DisableFirstRenderCameraReset()
 view = GetActiveViewOrCreate("RenderView")
 view.Background = [0.07, 0.09, 0.12]
 view.UseColorPaletteForBackground = 0
@@ -25,6 +24,7 @@ times = sorted({t for reader in readers.values() for t in (reader.TimestepValues
 # The air: the slices that were recorded, else the middle of the box.
 shown = [reader for name, reader in readers.items() if name.startswith("slice-")]
 if not shown and "air" in readers:
+    readers["air"].UpdatePipeline(times[0])
     box = readers["air"].GetDataInformation().GetBounds()
     cut = Slice(registrationName="middle", Input=readers["air"], SliceType="Plane")
     cut.SliceType.Origin = [(box[2 * d] + box[2 * d + 1]) / 2 for d in range(3)]
@@ -43,7 +43,7 @@ def fastest(time):
 
 
 speeds = [fastest(time) for time in times]
-moment = times[speeds.index(max(speeds))] if shown else times[-1]
+moment = times[speeds.index(max(speeds))]
 for source in shown:
     display = Show(source, view)
     display.Representation = "Surface"
@@ -62,7 +62,7 @@ if "bodies" in readers:
     ColorBy(bodies, None)
     bodies.DiffuseColor = bodies.AmbientColor = [0.95, 0.7, 0.38]
 
-#From the side : x to the right, z up.
+# From the side: x to the right, z up.
 scene = GetAnimationScene()
 scene.UpdateAnimationUsingDataTimeSteps()
 scene.AnimationTime = view.ViewTime = moment
@@ -70,9 +70,9 @@ view.CameraPosition, view.CameraFocalPoint, view.CameraViewUp = [0, -1, 0], [0, 
 view.CameraParallelProjection = 1
 ResetCamera(view)
 Render(view)
-if len(sys.argv) > 1 and sys.argv[-1].endswith(".png"):
+if sys.argv[-1].endswith(".png"):
     SaveScreenshot(sys.argv[-1], view, ImageResolution=[1200, 900])
-)";
+)py";
 
 }  // namespace
 

@@ -1,6 +1,8 @@
 #include <cstddef>
 
 #include "serve/server.hpp"
+// The sum of the page, for compilers' caches: see output/report_page.cpp.
+#include EJECTA_WORKBENCH_PAGE_SUM
 
 // The file becomes part of the program as it is, as that of the report does.
 asm(".section .rodata\n"
