@@ -11,7 +11,7 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as pyplot
 import numpy
 
-import ejecta_run
+import ejecta
 
 
 def strongest_moment(run, bodies):
@@ -36,7 +36,7 @@ def plot_slice(axes, run, time):
     pyplot.colorbar(image, ax=axes, label="air speed [m/s]", shrink=0.6)
     across = [d for d in range(3) if d != air.axis]
     for body, pose in zip(header["bodies"], frame.poses):
-        corners = body["vertices"] @ ejecta_run.rotation(pose[3:]).T + pose[:3]
+        corners = body["vertices"] @ ejecta.rotation(pose[3:]).T + pose[:3]
         for triangle in body["triangles"]:
             axes.fill(*(corners[triangle][:, across] * 1e3).T, color="0.8")
     axes.set_aspect("equal")
@@ -46,7 +46,7 @@ def plot_slice(axes, run, time):
 
 
 def main(directory, picture):
-    run = ejecta_run.Run(directory)
+    run = ejecta.Run(directory)
     bodies = [name for name in run.histories() if name.startswith("body-")]
     figure, axes = pyplot.subplot_mosaic(
         [["path", "path"], ["air", "velocity"], ["air", "force"]], figsize=(12, 10), layout="constrained")

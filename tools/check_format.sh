@@ -5,4 +5,4 @@ cd "$(dirname "$0")/.."
 command -v clang-format > /dev/null || { echo "skipped: clang-format is not installed"; exit 77; }
 mode=(--dry-run -Werror)
 [[ ${1:-} == --fix ]] && mode=(-i)
-find src tests fuzz -name '*.[ch]pp' -print0 | xargs -0 clang-format "${mode[@]}"
+find src tests fuzz python -name '*.[ch]pp' -print0 | xargs -0 clang-format "${mode[@]}"

@@ -2,8 +2,8 @@
 # tools/setup.sh [PACKAGE...]: installs what the build needs from Debian's packages, and the packages named, if
 # anything is missing.
 set -euo pipefail
-packages=(build-essential cmake ninja-build ccache git python3 libeigen3-dev libfmt-dev libtoml11-dev libcli11-dev
-          nlohmann-json3-dev libhdf5-dev zlib1g-dev libgtest-dev libgmock-dev librapidcheck-dev nodejs npm "$@")
+packages=(build-essential cmake ninja-build ccache git python3 python3-dev python3-numpy pybind11-dev libeigen3-dev libfmt-dev libtoml11-dev libcli11-dev
+          nlohmann-json3-dev libhdf5-dev zlib1g-dev libcpp-httplib-dev libxlsxwriter-dev libgtest-dev libgmock-dev librapidcheck-dev nodejs npm "$@")
 missing=()
 for p in "${packages[@]}"; do
   [[ $p == nodejs || $p == npm ]] && command -v "${p/nodejs/node}" > /dev/null && continue

@@ -11,8 +11,6 @@
 #include "base/error.hpp"
 #include "base/exit_code.hpp"
 #include "base/parallel.hpp"
-#include "case/extent.hpp"
-#include "jet/computed.hpp"
 #include "jet/inlet.hpp"
 #include "jet/store.hpp"
 #include "output/progress.hpp"
@@ -212,12 +210,9 @@ std::optional<nlohmann::ordered_json> result_of(const Case& c, const std::filesy
 }
 
 int jet_case(const Case& c, const RunOptions& options) {
-  // A box that is fed with a computed jet stands for the case that computes it.
-  const bool box = c.flow.solver != FlowSolver::compressible && !c.jet.source_case.empty();
-  const Case jet = box ? computed_jet_case(c) : c;
-  const double kept_at = box ? jet_height(c) : kBoxHeight;
+  const auto [jet, kept_at] = jet_of(c);
   if (options.sweep) return sweep(jet, options);
-  return run_into_directory("jet", jet, options, [kept_at](const Case& of, const Context& context) {
+  return run_into_directory("jet", jet, options, [kept_at = kept_at](const Case& of, const Context& context) {
     return run_jet(of, kept_at, context);
   });
 }

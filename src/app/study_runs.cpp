@@ -30,7 +30,8 @@ RunAnswer run_for_study(const Case& c, const RunRequest& request) {
                       },
                   .stop = request.stop,
                   .keep = {},
-                  .note = request.note};
+                  .note = request.note,
+                  .keep_histories = false};
   if (request.directory.empty()) return answer_of(run(c, context));
   if (auto done = finished_run(c, request.directory)) {
     done->wall_time = done->quantities.value("wall_time_s", 0.0);

@@ -17,4 +17,22 @@ class FileLock {
   int descriptor_;
 };
 
+/// Claims a directory for as long as it lives, or until its process dies: nobody else on this machine has it
+/// meanwhile. Leaves nothing behind in it.
+class DirectoryClaim {
+ public:
+  explicit DirectoryClaim(const std::filesystem::path& directory);
+  ~DirectoryClaim();
+  DirectoryClaim(const DirectoryClaim&) = delete;
+  DirectoryClaim& operator=(const DirectoryClaim&) = delete;
+  /// False: somebody else has it. True also where the file system knows no locks.
+  bool held() const { return held_; }
+
+ private:
+  int descriptor_;
+  bool held_ = true;
+};
+/// Somebody has claimed it.
+bool is_claimed(const std::filesystem::path& directory);
+
 }  // namespace ejecta

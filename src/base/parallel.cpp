@@ -14,9 +14,6 @@
 namespace ejecta {
 namespace {
 
-/// In every program from its first line; threads inherit it.
-[[maybe_unused]] const bool denormals_flushed = (flush_denormals(), true);
-
 int threads_at_start() {
   const char* asked = std::getenv("OMP_NUM_THREADS");  // the name that job schedulers set
   const int threads = asked ? std::atoi(asked) : 0;
@@ -64,6 +61,7 @@ namespace detail {
 
 void run_pieces(int pieces, PieceBody body, const void* kernel) {
   Caller& c = caller;
+  if (!c.in_loop) flush_denormals();
   if (c.in_loop || c.threads == 1 || pieces <= 1) {
     for (int piece = 0; piece < pieces; ++piece) body(kernel, piece);
     return;

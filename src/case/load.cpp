@@ -86,18 +86,25 @@ Case resolve(const Node& root, const std::string& name, bool syntax_errors, std:
 
 }  // namespace
 
-Case parse_case(const std::string& text, const std::string& name, const std::vector<std::string>& overrides,
-                std::vector<Problem>* warnings, const FurtherChecks& further) {
+Case examine_case(const std::string& text, const std::string& name, const std::vector<std::string>& overrides,
+                  std::vector<Problem>& problems, std::vector<Problem>* warnings,
+                  const FurtherChecks& further) {
   check_text(text, name);
-  std::vector<Problem> problems;
   std::vector<std::string> bases;
   Node root = parse_extended(std::make_shared<Source>(Source{name, text}), problems, bases);
   // Keys may be missing only because their line could not be read: say what is wrong with the rest, not that.
   const bool syntax_errors = !problems.empty();
   for (const std::string& assignment : overrides) apply_override(root, assignment, problems);
   Case c = resolve(root, name, syntax_errors, problems, warnings, further);
-  throw_if_any(problems);
   c.bases = std::move(bases);
+  return c;
+}
+
+Case parse_case(const std::string& text, const std::string& name, const std::vector<std::string>& overrides,
+                std::vector<Problem>* warnings, const FurtherChecks& further) {
+  std::vector<Problem> problems;
+  Case c = examine_case(text, name, overrides, problems, warnings, further);
+  throw_if_any(problems);
   return c;
 }
 
@@ -113,8 +120,8 @@ Node case_tree(const std::string& path, const std::vector<std::string>& override
 }
 
 Case resolve_case(const Node& root, const std::string& name, std::vector<Problem>& problems,
-                  const FurtherChecks& further) {
-  return resolve(root, name, false, problems, nullptr, further);
+                  const FurtherChecks& further, std::vector<Problem>* warnings) {
+  return resolve(root, name, false, problems, warnings, further);
 }
 
 std::string folder_of(const Case& c) { return std::filesystem::path(c.path).parent_path().string(); }

@@ -22,12 +22,19 @@ Case parse_case(const std::string& text, const std::string& name,
                 const std::vector<std::string>& overrides = {}, std::vector<Problem>* warnings = nullptr,
                 const FurtherChecks& further = {});
 
+/// The same for who shows a case that may be wrong: as far as it can be read, with what is wrong in
+/// `problems`.
+Case examine_case(const std::string& text, const std::string& name, const std::vector<std::string>& overrides,
+                  std::vector<Problem>& problems, std::vector<Problem>* warnings = nullptr,
+                  const FurtherChecks& further = {});
+
 /// The tree of a case file with `overrides` applied, for those who resolve many variations of it. Throws
 /// InputError with all that is no TOML.
 Node case_tree(const std::string& path, const std::vector<std::string>& overrides = {});
-/// The case of a tree, as load_case resolves it; `problems` gets what is wrong with it.
+/// The case of a tree, as load_case resolves it; `problems` gets what is wrong with it, `warnings` what is
+/// only unlikely to be meant.
 Case resolve_case(const Node& root, const std::string& name, std::vector<Problem>& problems,
-                  const FurtherChecks& further = {});
+                  const FurtherChecks& further = {}, std::vector<Problem>* warnings = nullptr);
 
 /// The folder of the case file, to which the names of files in it are relative.
 std::string folder_of(const Case& c);

@@ -37,6 +37,15 @@ const Node* element(const Node& list, const std::string& which) {
   return nullptr;
 }
 
+const Node* find_node(const Node& root, const std::string& path) {
+  const Node* node = &root;
+  for (const std::string& part : split_path(path)) {
+    node = node->is_list() ? element(*node, part) : node->find(part);
+    if (!node) return nullptr;
+  }
+  return node;
+}
+
 Place locate(const Node& root, const std::string& path) {
   const Node* node = &root;
   for (const std::string& part : split_path(path)) {

@@ -55,30 +55,47 @@ std::size_t length_until(const std::filesystem::path& path, const std::string& h
 
 HistoryFile::HistoryFile(const std::filesystem::path& path, std::span<const std::string> provenance,
                          std::vector<Column> columns)
-    : name_(path.string()), columns_(std::move(columns)), file_(path) {
+    : History(path.string(), std::move(columns)), path_(path), file_(path) {
   std::string head;
   for (const std::string& line : provenance) head += fmt::format("# {}\n", line);
-  file_.append(head + header_row(columns_));
+  file_.append(head + header_row(this->columns()));
 }
 
 HistoryFile::HistoryFile(const std::filesystem::path& path, std::vector<Column> columns, double time)
-    : name_(path.string()),
-      columns_(std::move(columns)),
-      file_(path, length_until(path, header_row(columns_), time)) {}
+    : History(path.string(), std::move(columns)),
+      path_(path),
+      file_(path, length_until(path, header_row(this->columns()), time)) {}
 
-void HistoryFile::add(double time, std::span<const double> values) {
+void History::add(double time, std::span<const double> values) {
   if (values.size() != columns_.size())
     throw Error(fmt::format("{}: {} values for {} columns", name_, values.size(), columns_.size()));
-  row_.clear();
-  fmt::format_to(std::back_inserter(row_), "{}", time);
-  for (std::size_t n = 0; n < values.size(); ++n) {
+  for (std::size_t n = 0; n < values.size(); ++n)
     if (!std::isfinite(values[n]))
       throw DivergedError(fmt::format("{}: {} is {} at t = {} s", name_, columns_[n].name, values[n], time));
-    fmt::format_to(std::back_inserter(row_), ",{}", values[n]);
-  }
+  keep(time, values);
+}
+
+HistoryInMemory::HistoryInMemory(std::string name, std::vector<Column> columns)
+    : History(std::move(name), std::move(columns)) {
+  table_.columns.push_back({"time", "s"});
+  for (const Column& c : this->columns()) table_.columns.push_back(c);
+  table_.values.resize(table_.columns.size());
+}
+
+void HistoryInMemory::keep(double time, std::span<const double> values) {
+  table_.values[0].push_back(time);
+  for (std::size_t n = 0; n < values.size(); ++n) table_.values[n + 1].push_back(values[n]);
+}
+
+void HistoryFile::keep(double time, std::span<const double> values) {
+  row_.clear();
+  fmt::format_to(std::back_inserter(row_), "{}", time);
+  for (const double value : values) fmt::format_to(std::back_inserter(row_), ",{}", value);
   row_ += '\n';
   file_.append(row_);
 }
+
+HistoryTable HistoryFile::table() const { return read_history(path_); }
 
 HistoryTable read_history(const std::filesystem::path& path) {
   const std::string content = read_file(path);

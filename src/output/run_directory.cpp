@@ -17,7 +17,7 @@ namespace {
 /// What a run may hold. The manifest, which says that it is one, goes last when it is cleared.
 constexpr std::array kContents{"case.toml",    "result.json",  "progress.json", "history",
                                "replay.jsonl", "figures.json", "fields",        "checkpoints",
-                               "report.html",  "manifest.json"};
+                               "report.html",  "view.py",      "manifest.json"};
 
 [[noreturn]] void refuse(const fs::path& path, const std::error_code& why) {
   throw InputError(fmt::format("cannot write the run directory {}: {} (choose another place with --out DIR)",

@@ -12,6 +12,24 @@
 namespace ejecta {
 namespace {
 
+[[noreturn]] void refuse_running(const std::filesystem::path& directory) {
+  throw InputError(
+      fmt::format("a run goes on in {}: wait for its end, stop it, or choose another place with --out DIR",
+                  directory.string()));
+}
+
+std::filesystem::path existing(const std::filesystem::path& directory) {
+  std::error_code told_later;
+  std::filesystem::create_directories(directory, told_later);
+  return directory;
+}
+
+output::RunDirectory opened(const RunFiles& files, const DirectoryClaim& claim) {
+  if (!claim.held()) refuse_running(files.directory);
+  if (files.resume) return output::RunDirectory::open(files.directory);
+  return output::RunDirectory::create(files.directory, files.overwrite);
+}
+
 std::string place_of(const NamedField& field) { return "field/" + field.name; }
 std::string place_of(const std::string& numbers) { return "numbers/" + numbers; }
 
@@ -20,6 +38,7 @@ std::string place_of(const std::string& numbers) { return "numbers/" + numbers; 
 std::string input_of(const Case& c) { return write_case(with_absolute_files(c)); }
 
 void Archive::require_place(const RunFiles& files) {
+  if (is_claimed(files.directory)) refuse_running(files.directory);
   if (files.resume) output::RunDirectory::open(files.directory);
   else output::RunDirectory::require_creatable(files.directory, files.overwrite);
 }
@@ -27,8 +46,8 @@ void Archive::require_place(const RunFiles& files) {
 Archive::Archive(const Case& c, Model& model, const RunFiles& files, const OutputsMaker& make_outputs,
                  const Note& note)
     : files_(files),
-      directory_(files.resume ? output::RunDirectory::open(files.directory)
-                              : output::RunDirectory::create(files.directory, files.overwrite)),
+      claim_(existing(files.directory)),
+      directory_(opened(files, claim_)),
       store_(directory_.checkpoints()) {
   const output::Provenance provenance{.command = files.command,
                                       .case_path = c.path,
@@ -45,7 +64,7 @@ Archive::Archive(const Case& c, Model& model, const RunFiles& files, const Outpu
   }
   directory_.write_case(provenance.input);
   if (!files.resume) directory_.write_manifest(output::make_manifest(provenance));
-  outputs_ = make_outputs(directory_, output::provenance_lines(provenance), resumed);
+  outputs_ = make_outputs({directory_, output::provenance_lines(provenance), resumed});
 }
 
 void Archive::write_checkpoint(Model& model, const Clock& clock, double wall_time) const {

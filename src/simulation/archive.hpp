@@ -5,9 +5,11 @@
 #include <string>
 #include <vector>
 
+#include "base/file_lock.hpp"
 #include "base/text.hpp"
 #include "output/checkpoint.hpp"
 #include "output/run_directory.hpp"
+#include "simulation/histories.hpp"
 #include "simulation/model.hpp"
 #include "simulation/run.hpp"
 
@@ -16,10 +18,8 @@ namespace ejecta {
 /// The case as a run keeps it: what it needs from elsewhere by absolute paths.
 std::string input_of(const Case& c);
 
-/// Makes what writes a run into its directory; `resumed`: from that time on, s.
-using OutputsMaker = std::function<std::unique_ptr<Outputs>(const output::RunDirectory& directory,
-                                                            const std::vector<std::string>& provenance,
-                                                            std::optional<double> resumed)>;
+/// Makes what records a run there.
+using OutputsMaker = std::function<std::unique_ptr<Outputs>(const OutputPlace&)>;
 
 /// The files of a run: its directory, its outputs, its checkpoints.
 class Archive {
@@ -27,7 +27,7 @@ class Archive {
   /// Refuses at once a place where the run could not be kept: its model may take minutes to build.
   static void require_place(const RunFiles& files);
   /// Makes the directory, or takes the model back to the last good checkpoint there. Throws InputError when
-  /// it is of another case, or its files have changed; nothing in the directory is touched before.
+  /// it is of another case, its files have changed or a run goes on there; nothing in it is touched before.
   Archive(const Case& c, Model& model, const RunFiles& files, const OutputsMaker& make_outputs,
           const Note& note);
 
@@ -44,6 +44,7 @@ class Archive {
   void restore_model(Model& model) const;
 
   RunFiles files_;
+  DirectoryClaim claim_;
   output::RunDirectory directory_;
   output::CheckpointStore store_;
   std::unique_ptr<Outputs> outputs_;

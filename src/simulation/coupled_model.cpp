@@ -285,6 +285,11 @@ std::optional<double> CoupledModel::later_end(double time) const {
   return std::ceil(1e3 * (time + 1.5 * latest)) * 1e-3;
 }
 
+FieldsOnGrid CoupledModel::fields() {
+  if (!flow_) return {};
+  return {&grid_, flow_->fields()};
+}
+
 std::vector<NamedField> CoupledModel::state_fields() {
   return flow_ ? flow_->state_fields() : std::vector<NamedField>{};
 }

@@ -44,6 +44,7 @@ class CoupledModel : public Model {
   double courant() const override { return courant_; }
   double busy_until() const override { return busy_until_; }
   std::vector<OperatorTime> operator_times() const override;
+  FieldsOnGrid fields() override;
   std::vector<NamedField> state_fields() override;
   StateNumbers state_numbers() const override;
   void restore_numbers(const StateNumbers& numbers, double time) override;

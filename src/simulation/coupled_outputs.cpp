@@ -5,7 +5,6 @@
 #include <algorithm>
 
 #include "base/state_reader.hpp"
-#include "simulation/open_history.hpp"
 #include "simulation/replay_header.hpp"
 #include "simulation/spacing.hpp"
 
@@ -46,10 +45,9 @@ double replay_interval(const Case& c) {
   return c.output.slices_interval > 0.0 ? c.output.slices_interval : c.run.end_time / kFrames;
 }
 
-output::PvdSeries open_series(const output::RunDirectory& directory, const std::string& name,
-                              std::optional<double> resume) {
-  return resume ? output::PvdSeries(directory.fields(), name, *resume)
-                : output::PvdSeries(directory.fields(), name);
+output::PvdSeries open_series(const OutputPlace& place, const std::string& name) {
+  return place.resumed ? output::PvdSeries(place.directory->fields(), name, *place.resumed)
+                       : output::PvdSeries(place.directory->fields(), name);
 }
 
 /// More bodies have no history each: a process may not hold so many files open.
@@ -57,60 +55,74 @@ constexpr std::size_t kHistories = 200;
 
 }  // namespace
 
-CoupledOutputs::CoupledOutputs(const Case& c, const CoupledModel& model,
-                               const output::RunDirectory& directory,
-                               const std::vector<std::string>& provenance, std::optional<double> resume)
+CoupledOutputs::CoupledOutputs(const Case& c, const CoupledModel& model, const OutputPlace& place,
+                               bool keep_histories)
     : case_(c),
       model_(model),
-      directory_(directory),
-      provenance_(provenance),
-      histories_(c.output.history_interval),
+      place_(place),
+      keep_histories_(place.directory || keep_histories),
+      histories_(place),
+      histories_due_(c.output.history_interval),
       fields_(or_never(c.output.fields_interval)),
       slices_due_(or_never(c.output.slices_interval)),
       replay_due_(replay_interval(c)) {
-  if (model.particles().bodies().size() <= kHistories)
-    for (const Body& b : model.particles().bodies())
-      bodies_.push_back(open_history(directory, "body-" + b.name, provenance, body_columns(), resume));
-  if (model.flow()) {
-    const auto quantities = model.flow()->quantities();
-    for (const ProbeSpec& spec : c.probes)
-      probes_.emplace_back(
-          spec, quantities,
-          open_history(directory, "probe-" + spec.name, provenance, Probe::columns(quantities), resume));
-    std::vector<Column> columns{{"position", "m"}};
-    for (const auto& [name, unit] : quantities) columns.push_back({name, unit});
-    if (c.output.slices_interval > 0.0)
-      for (const LineSpec& spec : c.lines) {
-        Line line{
-            points_of(spec), {}, open_history(directory, "line-" + spec.name, provenance, columns, resume)};
-        for (const Vec3& x : line.points) line.position.push_back((x - spec.from).norm());
-        lines_.push_back(std::move(line));
-      }
-  } else {
-    energy_ = open_history(
-        directory, "ledger", provenance,
-        {{"kinetic", "J"}, {"potential", "J"}, {"elastic", "J"}, {"dissipated", "J"}, {"work", "J"}}, resume);
-  }
-  if (c.output.fields_interval > 0.0) {
-    if (model.flow()) {
-      air_ = open_series(directory, "air", resume);
-      writer_.emplace(model.grid());
-    }
-    if (!model.particles().bodies().empty()) bodies_series_ = open_series(directory, "bodies", resume);
-  }
-  if (model.flow() && c.output.slices_interval > 0.0)
-    for (const SliceSpec& s : c.slices) {
-      slices_.push_back(open_series(directory, "slice-" + s.name, resume));
-      if (!writer_) writer_.emplace(model.grid());
-    }
+  open_histories();
+  if (!place.directory) return;
   header_ = replay_header(c, model);
-  if (bodies_series_) bodies_writer_.emplace(header_.bodies);
-  if (c.output.report) {
-    replay_ = resume && std::filesystem::exists(directory.replay())
-                  ? std::make_unique<output::ReplayFile>(directory.replay(), *resume)
-                  : std::make_unique<output::ReplayFile>(directory.replay(), header_);
-    for (const auto& raster : header_.rasters) samplers_.emplace_back(model.grid(), raster);
+  open_fields();
+  if (c.output.report) open_replay();
+}
+
+void CoupledOutputs::open_histories() {
+  const auto open = [&](const std::string& name, std::vector<Column> columns) {
+    return keep_histories_ ? &histories_.open(name, std::move(columns)) : nullptr;
+  };
+  if (keep_histories_ && model_.particles().bodies().size() <= kHistories)
+    for (const Body& b : model_.particles().bodies())
+      bodies_.push_back(open("body-" + b.name, body_columns()));
+  if (!model_.flow()) {
+    energy_ =
+        open("ledger",
+             {{"kinetic", "J"}, {"potential", "J"}, {"elastic", "J"}, {"dissipated", "J"}, {"work", "J"}});
+    return;
   }
+  const auto quantities = model_.flow()->quantities();
+  for (const ProbeSpec& spec : case_.probes)
+    probes_.emplace_back(spec, quantities, open("probe-" + spec.name, Probe::columns(quantities)));
+  if (!keep_histories_ || case_.output.slices_interval <= 0.0) return;
+  std::vector<Column> columns{{"position", "m"}};
+  for (const auto& [name, unit] : quantities) columns.push_back({name, unit});
+  for (const LineSpec& spec : case_.lines) {
+    Line line{points_of(spec), {}, open("line-" + spec.name, columns)};
+    for (const Vec3& x : line.points) line.position.push_back((x - spec.from).norm());
+    lines_.push_back(std::move(line));
+  }
+}
+
+void CoupledOutputs::open_fields() {
+  if (case_.output.fields_interval > 0.0) {
+    if (model_.flow()) {
+      air_ = open_series(place_, "air");
+      writer_.emplace(model_.grid());
+    }
+    if (!model_.particles().bodies().empty()) {
+      bodies_series_ = open_series(place_, "bodies");
+      bodies_writer_.emplace(header_.bodies);
+    }
+  }
+  if (model_.flow() && case_.output.slices_interval > 0.0)
+    for (const SliceSpec& s : case_.slices) {
+      slices_.push_back(open_series(place_, "slice-" + s.name));
+      if (!writer_) writer_.emplace(model_.grid());
+    }
+}
+
+void CoupledOutputs::open_replay() {
+  const auto path = place_.directory->replay();
+  replay_ = place_.resumed && std::filesystem::exists(path)
+                ? std::make_unique<output::ReplayFile>(path, *place_.resumed)
+                : std::make_unique<output::ReplayFile>(path, header_);
+  for (const auto& raster : header_.rasters) samplers_.emplace_back(model_.grid(), raster);
 }
 
 void CoupledOutputs::add_events(Clock& clock) const {
@@ -120,10 +132,10 @@ void CoupledOutputs::add_events(Clock& clock) const {
 
 void CoupledOutputs::observe(double time, std::int64_t) {
   update_probes(time);
-  if (histories_.due(time)) write_histories(time);
+  if (histories_due_.due(time)) write_histories(time);
   if (fields_.due(time)) write_fields(time);
   if (model_.air() && slices_due_.due(time)) write_slices(time);
-  if (replay_due_.due(time)) write_replay(time);
+  if (replay_ && replay_due_.due(time)) write_replay(time);
 }
 
 void CoupledOutputs::update_probes(double time) {
@@ -133,7 +145,7 @@ void CoupledOutputs::update_probes(double time) {
 }
 
 void CoupledOutputs::write_histories(double time) {
-  histories_.done(time);
+  histories_due_.done(time);
   const auto bodies = model_.particles().bodies();
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
     std::array<double, 21> row;
@@ -224,30 +236,29 @@ void CoupledOutputs::write_slices(double time) {
 
 void CoupledOutputs::write_lines(double time) {
   for (Line& line : lines_) {
-    std::vector<double> row(line.file->columns().size());
+    std::vector<double> row(line.history->columns().size());
     for (std::size_t n = 0; n < line.points.size(); ++n) {
       row[0] = line.position[n];
       model_.flow()->sample(line.points[n], std::span(row).subspan(1));
-      line.file->add(time, row);
+      line.history->add(time, row);
     }
   }
 }
 
 void CoupledOutputs::finish(double time) {
-  if (time > histories_.last()) write_histories(time);
+  if (time > histories_due_.last()) write_histories(time);
   const Particles& particles = model_.particles();
-  if (!belt_runs(particles)) return;
-  output::HistoryFile file(directory_.history("spacing"), provenance_,
-                           {{"body", "1"},
-                            {"neighbour", "1"},
-                            {"x", "m"},
-                            {"y", "m"},
-                            {"z", "m"},
-                            {"gap", "m"},
-                            {"centre_distance", "m"}});
+  if (!keep_histories_ || !belt_runs(particles)) return;
+  output::History& history = histories_.open_anew("spacing", {{"body", "1"},
+                                                              {"neighbour", "1"},
+                                                              {"x", "m"},
+                                                              {"y", "m"},
+                                                              {"z", "m"},
+                                                              {"gap", "m"},
+                                                              {"centre_distance", "m"}});
   for (const Spacing& s : spacings(particles)) {
     const Vec3& x = particles.bodies()[static_cast<std::size_t>(s.body)].position;
-    file.add(time, std::array{double(s.body), double(s.neighbour), x.x(), x.y(), x.z(), s.gap, s.centre});
+    history.add(time, std::array{double(s.body), double(s.neighbour), x.x(), x.y(), x.z(), s.gap, s.centre});
   }
 }
 
@@ -267,7 +278,7 @@ void CoupledOutputs::report(nlohmann::ordered_json& result) {
 }
 
 std::vector<double> CoupledOutputs::state() const {
-  std::vector<double> s{histories_.last(), fields_.last(), slices_due_.last(), replay_due_.last(),
+  std::vector<double> s{histories_due_.last(), fields_.last(), slices_due_.last(), replay_due_.last(),
                         last_probe_time_};
   for (const Probe& p : probes_) p.save(s);
   return s;
@@ -275,7 +286,8 @@ std::vector<double> CoupledOutputs::state() const {
 
 void CoupledOutputs::restore(const std::vector<double>& s) {
   StateReader in(s, "outputs");
-  for (Schedule* schedule : {&histories_, &fields_, &slices_due_, &replay_due_}) schedule->done(in.number());
+  for (Schedule* schedule : {&histories_due_, &fields_, &slices_due_, &replay_due_})
+    schedule->done(in.number());
   last_probe_time_ = in.number();
   for (Probe& p : probes_) p.load(in);
   in.end();

@@ -4,24 +4,22 @@
 #include <vector>
 
 #include "output/checkpoint.hpp"
-#include "output/history.hpp"
 #include "output/pvd_series.hpp"
 #include "output/replay.hpp"
-#include "output/run_directory.hpp"
 #include "output/slice_sampler.hpp"
 #include "output/vtk_bodies.hpp"
 #include "output/vtk_rectilinear.hpp"
 #include "simulation/coupled_model.hpp"
+#include "simulation/histories.hpp"
 #include "simulation/probe.hpp"
 
 namespace ejecta {
 
-/// Everything a run writes while it goes. Observes the model, never changes it.
+/// Everything a run records while it goes. Observes the model, never changes it.
 class CoupledOutputs : public Outputs {
  public:
-  /// `resume_time`: go on with existing files, dropping what is later.
-  CoupledOutputs(const Case& c, const CoupledModel& model, const output::RunDirectory& directory,
-                 const std::vector<std::string>& provenance, std::optional<double> resume_time);
+  /// `keep_histories` false: where there is no directory, none are kept in memory either.
+  CoupledOutputs(const Case& c, const CoupledModel& model, const OutputPlace& place, bool keep_histories);
 
   void observe(double time, std::int64_t steps) override;
   void add_events(Clock& clock) const override;
@@ -29,6 +27,7 @@ class CoupledOutputs : public Outputs {
   void finish(double time) override;
   /// Greatest value each probe saw of each quantity, with its time; last values; lines.
   void report(nlohmann::ordered_json& result) override;
+  output::NamedHistories histories() const override { return histories_.in_memory(); }
 
   std::vector<double> state() const override;
   void restore(const std::vector<double>& state) override;
@@ -37,8 +36,11 @@ class CoupledOutputs : public Outputs {
   struct Line {
     std::vector<Vec3> points;
     std::vector<double> position;  ///< m, from its first end
-    std::unique_ptr<output::HistoryFile> file;
+    output::History* history;
   };
+  void open_histories();
+  void open_fields();
+  void open_replay();
   void write_histories(double time);
   void write_fields(double time);
   void write_slices(double time);
@@ -49,12 +51,13 @@ class CoupledOutputs : public Outputs {
 
   const Case& case_;
   const CoupledModel& model_;
-  output::RunDirectory directory_;
-  std::vector<std::unique_ptr<output::HistoryFile>> bodies_;
+  OutputPlace place_;
+  bool keep_histories_;
+  Histories histories_;
+  std::vector<output::History*> bodies_;  ///< of each, or of none
   std::vector<Probe> probes_;
   std::vector<Line> lines_;
-  std::vector<std::string> provenance_;
-  std::unique_ptr<output::HistoryFile> energy_;
+  output::History* energy_ = nullptr;
   std::optional<output::PvdSeries> air_, bodies_series_;
   std::vector<output::PvdSeries> slices_;
   std::optional<output::RectilinearWriter> writer_;
@@ -62,7 +65,7 @@ class CoupledOutputs : public Outputs {
   std::unique_ptr<output::ReplayFile> replay_;
   output::ReplayHeader header_;
   std::vector<output::SliceSampler> samplers_;
-  Schedule histories_, fields_, slices_due_, replay_due_;
+  Schedule histories_due_, fields_, slices_due_, replay_due_;
   double last_probe_time_ = 0.0;
 };
 

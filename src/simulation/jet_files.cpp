@@ -3,24 +3,20 @@
 #include <algorithm>
 #include <array>
 
-#include "output/history.hpp"
-
 namespace ejecta {
 
-void write_centreline(const output::RunDirectory& directory, std::span<const std::string> provenance,
-                      double time, const std::string& name, const Centreline& line) {
-  output::HistoryFile file(directory.history("line-" + name), provenance,
-                           {{"position", "m"},
-                            {"velocity_z", "m/s"},
-                            {"mach", "1"},
-                            {"pressure", "Pa"},
-                            {"temperature", "K"},
-                            {"total_gauge", "Pa"},
-                            {"pitot_gauge", "Pa"},
-                            {"half_radius", "m"},
-                            {"supersonic_radius", "m"},
-                            {"k", "m2/s2"},
-                            {"epsilon", "m2/s3"}});
+void write_centreline(Histories& histories, double time, const std::string& name, const Centreline& line) {
+  output::History& history = histories.open_anew("line-" + name, {{"position", "m"},
+                                                                  {"velocity_z", "m/s"},
+                                                                  {"mach", "1"},
+                                                                  {"pressure", "Pa"},
+                                                                  {"temperature", "K"},
+                                                                  {"total_gauge", "Pa"},
+                                                                  {"pitot_gauge", "Pa"},
+                                                                  {"half_radius", "m"},
+                                                                  {"supersonic_radius", "m"},
+                                                                  {"k", "m2/s2"},
+                                                                  {"epsilon", "m2/s3"}});
   for (std::size_t n = 0; n < line.z.size(); ++n) {
     const JetSample& s = line.samples[n];
     const std::array<double, 11> row{line.z[n],
@@ -34,7 +30,7 @@ void write_centreline(const output::RunDirectory& directory, std::span<const std
                                      line.supersonic_radius[n],
                                      s.k,
                                      s.epsilon};
-    file.add(time, row);
+    history.add(time, row);
   }
 }
 
@@ -48,21 +44,19 @@ LineProfile line_profile(const JetModel& jet, const LineSpec& spec) {
   return p;
 }
 
-void write_line(const output::RunDirectory& directory, std::span<const std::string> provenance, double time,
-                const LineSpec& spec, const LineProfile& profile) {
-  output::HistoryFile file(directory.history("line-" + spec.name), provenance,
-                           {{"position", "m"},
-                            {"velocity_x", "m/s"},
-                            {"velocity_z", "m/s"},
-                            {"mach", "1"},
-                            {"density", "kg/m3"},
-                            {"total_gauge", "Pa"},
-                            {"pitot_gauge", "Pa"}});
+void write_line(Histories& histories, double time, const LineSpec& spec, const LineProfile& profile) {
+  output::History& history = histories.open_anew("line-" + spec.name, {{"position", "m"},
+                                                                       {"velocity_x", "m/s"},
+                                                                       {"velocity_z", "m/s"},
+                                                                       {"mach", "1"},
+                                                                       {"density", "kg/m3"},
+                                                                       {"total_gauge", "Pa"},
+                                                                       {"pitot_gauge", "Pa"}});
   for (std::size_t n = 0; n < profile.samples.size(); ++n) {
     const JetSample& s = profile.samples[n];
     const std::array<double, 7> row{profile.distance[n], s.velocity.x(), s.velocity.z(), s.mach,
                                     s.density,           s.total_gauge,  s.pitot_gauge};
-    file.add(time, row);
+    history.add(time, row);
   }
 }
 

@@ -1,15 +1,13 @@
 #pragma once
-#include <span>
 #include <string>
 
 #include "jet/analysis.hpp"
-#include "output/run_directory.hpp"
+#include "simulation/histories.hpp"
 
-/// Profiles of a jet as files of history/.
+/// Profiles of a jet as histories.
 namespace ejecta {
 
-void write_centreline(const output::RunDirectory& directory, std::span<const std::string> provenance,
-                      double time, const std::string& name, const Centreline& line);
+void write_centreline(Histories& histories, double time, const std::string& name, const Centreline& line);
 
 /// A line of the case at one moment.
 struct LineProfile {
@@ -17,7 +15,6 @@ struct LineProfile {
   std::vector<JetSample> samples;
 };
 LineProfile line_profile(const JetModel& jet, const LineSpec& spec);
-void write_line(const output::RunDirectory& directory, std::span<const std::string> provenance, double time,
-                const LineSpec& spec, const LineProfile& profile);
+void write_line(Histories& histories, double time, const LineSpec& spec, const LineProfile& profile);
 
 }  // namespace ejecta

@@ -7,7 +7,6 @@
 
 #include "base/state_reader.hpp"
 #include "simulation/jet_figures.hpp"
-#include "simulation/open_history.hpp"
 
 namespace ejecta {
 namespace {
@@ -23,17 +22,15 @@ const std::vector<output::Column> kOrifice{
 
 }  // namespace
 
-JetOutputs::JetOutputs(const RecordedJet& model, const output::RunDirectory& directory,
-                       const std::vector<std::string>& provenance, std::optional<double> resumed)
+JetOutputs::JetOutputs(const RecordedJet& model, OutputPlace place)
     : model_(model),
-      directory_(directory),
-      provenance_(provenance),
-      orifice_(open_history(directory, "orifice", provenance, kOrifice, resumed)),
-      next_history_(resumed.value_or(0.0)) {
+      directory_(place.directory),
+      histories_(place),
+      orifice_(histories_.open("orifice", kOrifice)),
+      next_history_(place.resumed.value_or(0.0)) {
   const Case& c = model.jet().scenario();
   interval_ = c.output.history_interval > 0.0 ? c.output.history_interval : kDefaultHistory;
-  for (const ProbeSpec& p : c.probes)
-    probes_.push_back(open_history(directory, "probe-" + p.name, provenance, kProbe, resumed));
+  for (const ProbeSpec& p : c.probes) probes_.push_back(&histories_.open("probe-" + p.name, kProbe));
 }
 
 void JetOutputs::observe(double time, std::int64_t steps) {
@@ -44,7 +41,7 @@ void JetOutputs::observe(double time, std::int64_t steps) {
     const ValveSpec& v = jet.scenario().valve;
     const JetFlow flow = jet.orifice_flow();
     const NozzleExit ideal = jet.ideal_exit();
-    orifice_->add(
+    orifice_.add(
         time, std::array{jet.valve().opening(time), jet.valve().total_pressure(time, jet.ambient_pressure()),
                          flow.mass, nozzle_mass_flow(ideal, v.discharge_coefficient, v.orifice_diameter),
                          flow.momentum, nozzle_thrust(ideal, v.discharge_coefficient, v.orifice_diameter),
@@ -61,15 +58,15 @@ void JetOutputs::observe(double time, std::int64_t steps) {
 void JetOutputs::finish(double) {
   const Case& c = model_.jet().scenario();
   if (const JetAtFull* full = model_.at_full()) {
-    write_centreline(directory_, provenance_, full->time, "centreline", full->centreline);
+    write_centreline(histories_, full->time, "centreline", full->centreline);
     for (std::size_t n = 0; n < c.lines.size(); ++n)
-      write_line(directory_, provenance_, full->time, c.lines[n], full->lines[n]);
+      write_line(histories_, full->time, c.lines[n], full->lines[n]);
   }
   add_centreline_figures();
   add_line_figures();
   add_probe_figures();
   if (model_.at_full()) figures_.add(model_.at_full()->schlieren);
-  figures_.write(directory_.figures());
+  if (directory_) figures_.write(directory_->figures());
 }
 
 void JetOutputs::report(nlohmann::ordered_json& result) {
@@ -156,7 +153,7 @@ void JetOutputs::add_line_figures() {
 void JetOutputs::add_probe_figures() {
   for (std::size_t n = 0; n < model_.probes().size(); ++n) {
     const ProbeSpec& spec = model_.probes()[n].spec();
-    const output::HistoryTable table = output::read_history(directory_.history("probe-" + spec.name));
+    const output::HistoryTable table = probes_[n]->table();
     const std::vector<double>& time = table.values[0];
     std::vector<double> ms = time, ideal = table.values[1], reading = table.values[2];
     for (auto* values : {&ideal, &reading})

@@ -11,7 +11,9 @@
 #include "base/clock.hpp"
 #include "base/stopwatch.hpp"
 #include "base/text.hpp"
-#include "grid/field.hpp"
+#include "grid/cell_field.hpp"
+#include "grid/grid.hpp"
+#include "output/history.hpp"
 
 namespace ejecta {
 
@@ -22,6 +24,12 @@ const std::vector<double>& numbers_of(const StateNumbers& numbers, const std::st
 
 /// As result.json lists them.
 nlohmann::ordered_json operators_json(std::span<const OperatorTime> operators);
+
+/// Fields with the grid on which they lie; null for none.
+struct FieldsOnGrid {
+  const Grid* grid = nullptr;
+  std::vector<CellField> fields{};
+};
 
 /// What a run advances: a box with bodies in its air, or a jet from its nozzle. The loop knows no more of it.
 class Model {
@@ -49,6 +57,8 @@ class Model {
   /// Operators of a step in their order, with what they cost so far.
   virtual std::vector<OperatorTime> operator_times() const = 0;
 
+  /// What can be looked at now.
+  virtual FieldsOnGrid fields() = 0;
   /// Everything a resume needs.
   virtual std::vector<NamedField> state_fields() = 0;
   virtual StateNumbers state_numbers() const = 0;
@@ -76,6 +86,8 @@ class Outputs {
   virtual void finish(double time) = 0;
   /// Adds what only the outputs know to the result of a run that has come to its end.
   virtual void report(nlohmann::ordered_json& result) = 0;
+  /// Those that were kept in memory.
+  virtual output::NamedHistories histories() const = 0;
   virtual std::vector<double> state() const = 0;
   virtual void restore(const std::vector<double>& state) = 0;
 };

@@ -6,7 +6,7 @@
 
 namespace ejecta {
 
-Probe::Probe(const ProbeSpec& spec, const Quantities& quantities, std::unique_ptr<output::HistoryFile> file)
+Probe::Probe(const ProbeSpec& spec, const Quantities& quantities, output::History* history)
     : spec_(spec),
       total_pressure_(
           static_cast<std::size_t>(std::find_if(quantities.begin(), quantities.end(),
@@ -16,7 +16,7 @@ Probe::Probe(const ProbeSpec& spec, const Quantities& quantities, std::unique_pt
       peak_(quantities.size() + 1, -1e300),
       peak_time_(quantities.size() + 1),
       scratch_(quantities.size()),
-      file_(std::move(file)) {}
+      history_(history) {}
 
 std::vector<output::Column> Probe::columns(const Quantities& quantities) {
   std::vector<output::Column> columns;

@@ -1,5 +1,4 @@
 #pragma once
-#include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <utility>
@@ -18,14 +17,17 @@ class Probe {
  public:
   using Quantities = std::vector<std::pair<std::string, std::string>>;  ///< name, unit
 
-  Probe(const ProbeSpec& spec, const Quantities& quantities, std::unique_ptr<output::HistoryFile> file);
+  /// `history`: null where none is kept.
+  Probe(const ProbeSpec& spec, const Quantities& quantities, output::History* history);
 
   /// Columns of its history.
   static std::vector<output::Column> columns(const Quantities& quantities);
 
   /// Reads the flow `dt` (s) after it did so last.
   void read(const FlowModel& flow, double time, double dt);
-  void write(double time) { file_->add(time, now_); }
+  void write(double time) {
+    if (history_) history_->add(time, now_);
+  }
   /// Last and greatest values with their times, under their names, for result.json.
   void report(nlohmann::ordered_json& result, const Quantities& quantities) const;
 
@@ -39,7 +41,7 @@ class Probe {
   std::size_t total_pressure_;                  // which quantity
   std::vector<double> now_, peak_, peak_time_;  // of the quantities, then the transducer
   std::vector<double> scratch_;
-  std::unique_ptr<output::HistoryFile> file_;
+  output::History* history_;
 };
 
 }  // namespace ejecta

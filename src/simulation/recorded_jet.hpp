@@ -44,6 +44,7 @@ class RecordedJet : public Model {
   double courant() const override { return jet_.scenario().run.courant; }
   double busy_until() const override { return jet_.scenario().run.end_time; }
   std::vector<OperatorTime> operator_times() const override { return {advance_, record_}; }
+  FieldsOnGrid fields() override { return {}; }
   std::vector<NamedField> state_fields() override;
   StateNumbers state_numbers() const override;
   void restore_numbers(const StateNumbers& numbers, double time) override;

@@ -7,6 +7,9 @@
 #include "base/clock.hpp"
 #include "base/stopwatch.hpp"
 #include "base/thread_budget.hpp"
+#include "case/extent.hpp"
+#include "jet/computed.hpp"
+#include "jet/store.hpp"
 #include "output/output_file.hpp"
 #include "output/report.hpp"
 #include "output/verdict.hpp"
@@ -15,6 +18,7 @@
 #include "simulation/coupled_outputs.hpp"
 #include "simulation/jet_outputs.hpp"
 #include "simulation/recorded_jet.hpp"
+#include "simulation/result_fields.hpp"
 
 namespace ejecta {
 namespace {
@@ -30,9 +34,10 @@ class Run {
     // After the model: a case that cannot start must not have cleared a finished run.
     if (context.files)
       archive_ = std::make_unique<Archive>(c, *model_, *context.files, make_outputs, context.note);
+    else loose_outputs_ = make_outputs({});
     for (double t : model_->events()) clock_.add_event(t);
     clock_.add_event(c.run.end_time);
-    if (archive_) archive_->outputs().add_events(clock_);
+    outputs().add_events(clock_);
     clock_.add_events_every(c.checkpoint.every_time, 0.0, c.run.end_time);
     if (archive_ && context.files->resume) archive_->restore(clock_, wall_before_);
     checkpoints_.done(clock_.time());
@@ -68,10 +73,11 @@ class Run {
           {*model_, clock_.time(), clock_.steps(), dt, std::max(model_->busy_until(), clock_.time())});
   }
 
+  Outputs& outputs() { return archive_ ? archive_->outputs() : *loose_outputs_; }
+
   void write_outputs() {
-    if (!archive_) return;
     const ScopedTimer timer(outputs_time_.seconds);
-    archive_->outputs().observe(clock_.time(), clock_.steps());
+    outputs().observe(clock_.time(), clock_.steps());
     ++outputs_time_.calls;
   }
 
@@ -101,12 +107,15 @@ class Run {
     return all;
   }
 
-  Result result(RunEnd end) const {
-    return {.end = end,
-            .time = clock_.time(),
-            .steps = clock_.steps(),
-            .wall_time = wall_time(),
-            .operators = operators()};
+  Result result(RunEnd end) {
+    Result r{.end = end,
+             .time = clock_.time(),
+             .steps = clock_.steps(),
+             .wall_time = wall_time(),
+             .operators = operators(),
+             .histories = outputs().histories()};
+    if (context_.keep_fields) r.fields = copied_fields(*model_);
+    return r;
   }
 
   Result conclude() {
@@ -114,15 +123,15 @@ class Run {
       write_checkpoint();
       return result(RunEnd::stopped);
     }
-    if (archive_) archive_->outputs().finish(clock_.time());
+    outputs().finish(clock_.time());
     Result r = result(RunEnd::decided);
     r.quantities = model_->result(r.time, r.steps, r.wall_time, r.operators);
     if (!output::undecided_bodies(r.quantities).empty()) {
       r.end = RunEnd::undecided;
       r.later_end = model_->later_end(r.time);
     }
+    outputs().report(r.quantities);
     if (archive_) {
-      archive_->outputs().report(r.quantities);
       if (r.end == RunEnd::undecided) write_checkpoint();  // from which a later end goes on
       archive_->directory().write_result(r.quantities);
       if (case_.output.report) output::write_report(archive_->directory().path());
@@ -136,6 +145,7 @@ class Run {
   const Context& context_;
   std::unique_ptr<Model> model_;
   std::unique_ptr<Archive> archive_;
+  std::unique_ptr<Outputs> loose_outputs_;  // of a run without files
   Clock clock_;
   Schedule checkpoints_;
   double start_ = 0.0, wall_before_ = 0.0, last_checkpoint_ = 0.0;
@@ -149,10 +159,8 @@ Result run(const Case& c, const Context& context) {
   const ThreadBudget budget(context.threads);
   if (context.files) Archive::require_place(*context.files);
   auto model = std::make_unique<CoupledModel>(c, context.note);
-  const auto outputs = [&, &m = *model](const output::RunDirectory& directory,
-                                        const std::vector<std::string>& provenance,
-                                        std::optional<double> resumed) {
-    return std::make_unique<CoupledOutputs>(c, m, directory, provenance, resumed);
+  const auto outputs = [&, &m = *model](const OutputPlace& place) {
+    return std::make_unique<CoupledOutputs>(c, m, place, context.keep_histories);
   };
   return Run(c, context, std::move(model), outputs).advance_to_end();
 }
@@ -164,14 +172,17 @@ bool is_jet_case(const Case& c) {
                      [](const PatchSpec& p) { return p.type == BoundaryType::jet; });
 }
 
+JetOrder jet_of(const Case& c) {
+  if (c.flow.solver == FlowSolver::compressible || c.jet.source_case.empty()) return {c, kBoxHeight};
+  return {computed_jet_case(c), jet_height(c)};
+}
+
 Result run_jet(const Case& c, double kept_at, const Context& context) {
   const ThreadBudget budget(context.threads);
   if (context.files) Archive::require_place(*context.files);
   auto model = std::make_unique<RecordedJet>(c, kept_at);
-  const auto outputs = [&m = *model](const output::RunDirectory& directory,
-                                     const std::vector<std::string>& provenance,
-                                     std::optional<double> resumed) {
-    return std::make_unique<JetOutputs>(m, directory, provenance, resumed);
+  const auto outputs = [&m = *model](const OutputPlace& place) {
+    return std::make_unique<JetOutputs>(m, place);
   };
   return Run(c, context, std::move(model), outputs).advance_to_end();
 }

@@ -91,4 +91,12 @@ path shipped_cases() {
   return path("share") / "ejecta";
 }
 
+std::string case_file(const std::string& given) {
+  if (std::filesystem::exists(given) || path(given).is_absolute()) return given;
+  for (const path& name : {path(given), path(given + ".toml")})
+    for (const path& folder : {shipped_cases() / "cases", shipped_cases()})
+      if (std::filesystem::is_regular_file(folder / name)) return (folder / name).string();
+  return given;
+}
+
 }  // namespace ejecta

@@ -63,6 +63,8 @@ std::vector<std::string> names_of(const std::vector<std::filesystem::path>& file
 /// Where cases/, validation/ and verification/ are: $EJECTA_SHARE, or share/ejecta in the nearest folder
 /// above the library, which is that of its installation or its build.
 std::filesystem::path shipped_cases();
+/// The file that a name means: that file, else the shipped case of that name ("tutorial").
+std::string case_file(const std::string& given);
 
 /// Quantity, computed, reference, error, pass, source; a line each.
 std::string validation_table(const std::vector<Validation>& list);

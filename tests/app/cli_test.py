@@ -1,16 +1,19 @@
 #!/usr/bin/python3
 """The command line as a user meets it: help, exit codes, first steps. Usage: cli_test.py EJECTA"""
 
+import csv
 import json
 import os
 import pathlib
+import re
 import subprocess
 import sys
 import tempfile
 import unittest
+import zipfile
 
 EJECTA = os.path.abspath(sys.argv.pop())
-COMMANDS = "run check plan explain new jet validate bench report cache study map".split()
+COMMANDS = "run check plan explain new jet validate bench report cache study map table paraview serve".split()
 BOUNCE = """[run]
 end_time = "1 ms"
 [flow]
@@ -326,6 +329,35 @@ class CommandLine(unittest.TestCase):
         self.assertEqual(manifest["set"], ["run.end_time=2 ms", "body.ball.mass=1 g"])
         self.assertIn("# set run.end_time=2 ms\n", pathlib.Path("case.run/history/body-ball.csv").read_text())
         self.assertIn("run.end_time=2 ms", pathlib.Path("case.run/report.html").read_text())
+
+    def test_results_as_a_table(self):
+        case = self.case()
+        for time in ("1 ms", "2 ms"):
+            ejecta("run", case, "--set", f"run.end_time={time}", "--out", f"{time[0]}.run", "-q")
+        answer = ejecta("table", "1.run", "2.run")
+        self.assertEqual(answer.returncode, 0, answer.stderr)
+        rows = list(csv.DictReader(pathlib.Path("results.csv").read_text().splitlines()))
+        self.assertEqual([row["run"] for row in rows], ["1.run", "2.run"])
+        self.assertEqual([row["run.end_time"] for row in rows], ["1 ms", "2 ms"])
+        result = json.loads(pathlib.Path("2.run/result.json").read_text())["bodies"][0]
+        self.assertEqual(float(rows[1]["final_position_z [m]"]), result["final_position_m"][2])
+        self.assertEqual(float(rows[1]["mass [kg]"]), result["mass_kg"])
+        for words in (["1.run", "--out", "x.txt"], ["nothing.run"]):
+            answer = ejecta("table", *words)
+            self.assertEqual(answer.returncode, 2)
+            self.assertIn("expected:", answer.stderr)
+        answer = ejecta("table", "1.run", "--out", "one.xlsx")
+        if "built without" in answer.stderr:
+            return
+        self.assertEqual(answer.returncode, 0, answer.stderr)
+        with zipfile.ZipFile("one.xlsx") as book:
+            sheets = re.findall(r'<sheet name="([^"]+)"', book.read("xl/workbook.xml").decode())
+            history = book.read("xl/worksheets/sheet2.xml").decode()
+        self.assertEqual(sheets, ["results", "body-ball", "ledger"])
+        written = [float(row.split(",")[3]) for row in pathlib.Path("1.run/history/body-ball.csv").read_text().splitlines() if row[0].isdigit()]
+        numbers = [float(cell) for cell in re.findall(r'<c r="D\d+"><v>([^<]+)</v>', history)]
+        self.assertEqual(len(numbers), len(written))
+        self.assertTrue(all(abs(a - b) <= 1e-15 * abs(b) for a, b in zip(numbers, written)))
 
     def test_a_case_in_doubtful_units_is_asked_about(self):
         for key, value, words in (

@@ -12,7 +12,7 @@ from pathlib import Path
 python_dir, program, run_dir = sys.argv[1:]
 sys.path.insert(0, python_dir)
 try:
-    import ejecta_run
+    import ejecta
 except ImportError as missing:
     print(f"skipped: {missing}")
     sys.exit(77)
@@ -31,7 +31,7 @@ def kill_after(seconds):
 
 def read_what_is_left():
     """Number of rows, frames and fields that came back; raises where a file in place is not whole."""
-    run = ejecta_run.Run(run_dir)
+    run = ejecta.Run(run_dir)
     rows = sum(len(run.history(name)["time"]) for name in run.histories())
     frames = len(run.frames()) if (run.directory / "replay.jsonl").exists() else 0
     series = {path.stem for path in run.directory.glob("fields/*.pvd")} - {"bodies"}

@@ -14,9 +14,9 @@ except ImportError as missing:
 
 python_dir, run_dir, picture = sys.argv[1:]
 sys.path.insert(0, python_dir)
-import ejecta_run  # noqa: E402
+import ejecta  # noqa: E402
 
-run = ejecta_run.Run(run_dir)
+run = ejecta.Run(run_dir)
 body = run.result["bodies"][0]
 table = run.history("body-cube")
 assert table.units["torque_y"] == "N m" and table.units["time"] == "s", table.units
@@ -28,7 +28,7 @@ assert all(a.time < b.time for a, b in zip(frames, frames[1:]))
 last = frames[-1].poses[0]
 assert numpy.allclose(last[:3], body["final_position_m"]) and abs(numpy.linalg.norm(last[3:]) - 1) < 1e-12
 
-waiting = ejecta_run.Frame({"rasters": []}, {"time": 0.0, "bodies": [None, [0, 0, 0, 1, 0, 0, 0]], "slices": []})
+waiting = ejecta.run_files.Frame({"rasters": []}, {"time": 0.0, "bodies": [None, [0, 0, 0, 1, 0, 0, 0]], "slices": []})
 assert numpy.isnan(waiting.poses[0]).all() and waiting.poses[1][3] == 1, "a body that has not come yet"
 
 # The quantised slice and the field in full are the same air: compare in the plane y = 0 at 8 ms.

@@ -10,6 +10,7 @@
 
 #include "app/ejection.hpp"
 #include "base/error.hpp"
+#include "base/file_lock.hpp"
 #include "scratch_directory.hpp"
 
 /// run(case) -> result, as studies, sorters and scripts call it.
@@ -161,6 +162,54 @@ report = false
   }
   mesh(-0.5);
   EXPECT_NE(run(c, {.files = files(true)}).end, RunEnd::stopped);
+}
+
+TEST(Run, WithoutFilesItHasTheHistoriesInTheResult) {
+  const ScratchDirectory scratch;
+  Case c = short_ejection();
+  c.output.history_interval = 0.0;
+  c.output.slices_interval = 0.1e-3;  // the clock lands on the times of slices whoever looks
+  const std::filesystem::path place = scratch.path() / "run";
+  const Result with = run(c, {.files = RunFiles{.directory = place, .command = "typed"}});
+  const Result without = run(c);
+  EXPECT_TRUE(with.histories.empty()) << "they are in the files";
+  EXPECT_EQ(figures_of(without), figures_of(with));
+  ASSERT_FALSE(without.histories.empty());
+  for (const auto& [name, table] : without.histories) {
+    const auto file = output::read_history(place / "history" / (name + ".csv"));
+    EXPECT_EQ(table.values, file.values) << name;
+    ASSERT_EQ(table.columns.size(), file.columns.size());
+    for (std::size_t n = 0; n < table.columns.size(); ++n) {
+      EXPECT_EQ(table.columns[n].name, file.columns[n].name);
+      EXPECT_EQ(table.columns[n].unit, file.columns[n].unit);
+    }
+  }
+  EXPECT_TRUE(run(c, {.keep_histories = false}).histories.empty());
+}
+
+TEST(Run, KeepsTheFieldsOfItsLastMomentWhereTheyAreWanted) {
+  const Case c = short_ejection();
+  EXPECT_FALSE(run(c).fields);
+  const Result r = run(c, {.keep_fields = true});
+  ASSERT_TRUE(r.fields);
+  const std::size_t cells =
+      (r.fields->faces[0].size() - 1) * (r.fields->faces[1].size() - 1) * (r.fields->faces[2].size() - 1);
+  EXPECT_EQ(cells, std::size_t(r.quantities["cells"]));
+  for (const ResultField& f : r.fields->fields) EXPECT_EQ(f.values.size(), cells * std::size_t(f.components));
+}
+
+TEST(Run, LeavesARunInPeaceThatGoesOnElsewhere) {
+  const ScratchDirectory scratch;
+  const std::filesystem::path place = scratch.path() / "run";
+  const Case c = short_ejection();
+  run(c, {.files = RunFiles{.directory = place, .command = "typed"}});
+  {
+    const DirectoryClaim somebody(place);
+    EXPECT_THROW(run(c, {.files = RunFiles{.directory = place, .overwrite = true, .command = "typed"}}),
+                 InputError);
+  }
+  EXPECT_TRUE(finished_run(c, place)) << "as it was";
+  run(c, {.files = RunFiles{.directory = place, .overwrite = true, .command = "typed"}});
 }
 
 }  // namespace

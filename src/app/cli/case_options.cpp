@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <cstdio>
-#include <filesystem>
 
 #include "simulation/body_checks.hpp"
 #include "validation/validation.hpp"
@@ -24,15 +23,6 @@ void add_threads(CLI::App& command, int& threads) {
   command.add_option("--threads", threads, "Threads (default: all cores)")
       ->type_name("N")
       ->check(CLI::Range(1, 1024).description(""));
-}
-
-std::string case_file(const std::string& given) {
-  namespace fs = std::filesystem;
-  if (fs::exists(given) || fs::path(given).is_absolute()) return given;
-  for (const fs::path& name : {fs::path(given), fs::path(given + ".toml")})
-    for (const fs::path& folder : {shipped_cases() / "cases", shipped_cases()})
-      if (fs::is_regular_file(folder / name)) return (folder / name).string();
-  return given;
 }
 
 Case load_and_warn(const CaseOptions& options, bool quiet) {

@@ -18,9 +18,6 @@ void add_case_options(CLI::App& command, CaseOptions& options);
 
 void add_threads(CLI::App& command, int& threads);
 
-/// The file that CASE means: that of the name given, else the shipped case of that name ("tutorial").
-std::string case_file(const std::string& given);
-
 /// Loads the case and, unless `quiet`, prints what is unlikely to be meant to stderr.
 Case load_and_warn(const CaseOptions& options, bool quiet = false);
 

@@ -11,6 +11,7 @@
 #include "base/exit_code.hpp"
 #include "simulation/body_checks.hpp"
 #include "simulation/forecast.hpp"
+#include "validation/validation.hpp"
 
 namespace ejecta {
 namespace {

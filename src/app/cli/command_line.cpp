@@ -8,6 +8,7 @@
 
 #include "app/cli/commands.hpp"
 #include "base/exit_code.hpp"
+#include "base/parallel.hpp"
 #include "base/text.hpp"
 #include "output/build_info.hpp"
 
@@ -69,6 +70,7 @@ void print_input_error(const InputError& e) {
 }
 
 int run_command_line(int argc, const char* const* argv) {
+  flush_denormals();
   CLI::App app(
       "Ejecta predicts which particles an air-jet sorter ejects: it computes the pulsed air jet, the "
       "particles\n"
@@ -90,8 +92,9 @@ int run_command_line(int argc, const char* const* argv) {
       "failed,\n6 ended before the verdict.");
   app.failure_message(failure);
   Action action;
-  for (auto* add : {add_run, add_check, add_plan, add_explain, add_new, add_jet, add_validate, add_bench,
-                    add_report, add_cache, add_study, add_map, add_campaign})
+  for (auto* add :
+       {add_run, add_check, add_plan, add_explain, add_new, add_jet, add_validate, add_bench, add_report,
+        add_cache, add_study, add_map, add_campaign, add_table, add_serve, add_paraview})
     add(app, action);
   for (CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
     command->group("Commands");

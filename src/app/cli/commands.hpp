@@ -23,6 +23,9 @@ void add_cache(CLI::App& app, Action& action);
 void add_study(CLI::App& app, Action& action);
 void add_map(CLI::App& app, Action& action);
 void add_campaign(CLI::App& app, Action& action);
+void add_serve(CLI::App& app, Action& action);
+void add_table(CLI::App& app, Action& action);
+void add_paraview(CLI::App& app, Action& action);
 
 /// Tells the user what is wrong with the input.
 void print_input_error(const InputError& e);

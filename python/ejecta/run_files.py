@@ -1,8 +1,7 @@
-"""Reads the run directory of Ejecta with numpy alone. Copy this file beside your own, or put this folder on
-PYTHONPATH.
+"""Reads the files of a run with numpy alone: it needs no compiled module.
 
-    import ejecta_run
-    run = ejecta_run.Run("10mm-cubic.run")
+    import ejecta
+    run = ejecta.Run("10mm-cubic.run")
     run.result["bodies"][0]["velocity_change_z_m_s"]
     cube = run.history("body-cube")
     cube["time"], cube["force_z"], cube.units["force_z"]
@@ -21,25 +20,39 @@ from pathlib import Path
 
 import numpy
 
+from .quantity import Array
+
 
 class Table(dict):
-    """Columns of a history by name, as numpy arrays; `units` gives their units, `provenance` the head lines."""
+    """Columns of a history by name, as numpy arrays with a `unit`; `units` gives the units of all, `provenance` the head
+    lines of its file."""
 
-    def __init__(self, path):
-        super().__init__()
+    def __init__(self, columns, provenance=()):
+        super().__init__(columns)
+        self.provenance = list(provenance)
+
+    @classmethod
+    def read(cls, path):
         text = Path(path).read_text()
         lines = text[: text.rfind("\n") + 1].splitlines()  # a run that is still going may have a torn last line
-        self.provenance = [line[2:] for line in lines if line.startswith("#")]
+        provenance = [line[2:] for line in lines if line.startswith("#")]
         lines = [line for line in lines if not line.startswith("#")]
-        self.units = {}
-        names = []
-        for head in lines[0].split(","):
-            name, unit = re.fullmatch(r"(.*) \[(.*)\]", head).groups()
-            names.append(name)
-            self.units[name] = unit
+        heads = [re.fullmatch(r"(.*) \[(.*)\]", head).groups() for head in lines[0].split(",")]
         rows = numpy.array([[float(cell) for cell in line.split(",")] for line in lines[1:]])
-        for n, column in enumerate(rows.reshape(-1, len(names)).T):
-            self[names[n]] = column
+        columns = rows.reshape(-1, len(heads)).T
+        return cls({name: Array(column, unit) for (name, unit), column in zip(heads, columns)}, provenance)
+
+    @property
+    def units(self):
+        return {name: column.unit for name, column in self.items()}
+
+    def to_pandas(self):
+        """The table as a DataFrame; `attrs["units"]` has the units."""
+        import pandas
+
+        frame = pandas.DataFrame({name: numpy.asarray(column) for name, column in self.items()})
+        frame.attrs["units"] = self.units
+        return frame
 
 
 class Slice:
@@ -113,7 +126,7 @@ class Run:
         return sorted(path.stem for path in (self.directory / "history").glob("*.csv"))
 
     def history(self, name):
-        return Table(self.directory / "history" / f"{name}.csv")
+        return Table.read(self.directory / "history" / f"{name}.csv")
 
     def _replay_lines(self):
         file = self.directory / "replay.jsonl"

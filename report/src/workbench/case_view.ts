@@ -1,0 +1,171 @@
+/** A case: its form and its text, both ways, checked while typing. */
+
+import { h } from "../dom";
+import { duration, fixed, thousands } from "../format";
+import { api, type Judgement, type Problem, type SchemaSection } from "./api";
+import { drawingView } from "./drawing";
+import { Form } from "./form";
+
+const PAUSE = 120; // ms without a key until the text is checked
+
+export class CaseView {
+  readonly element: HTMLElement;
+  private readonly form: Form;
+  private readonly text = h("textarea", { id: "text", spellcheck: "false", autocomplete: "off", wrap: "off", "aria-label": "The case as text (TOML)" });
+  private readonly lines = h("div", { class: "lines", "aria-hidden": "true" });
+  private readonly problems = h("ul", { class: "problems", "aria-live": "polite" });
+  private readonly summary = h("div", { class: "summary" });
+  private readonly status = h("span", { class: "status", role: "status" });
+  private readonly saveButton = h("button", { type: "button", id: "save" }, "Save");
+  private readonly startButton = h("button", { type: "button", id: "start", class: "primary" }, "Start");
+  private digest = "";
+  private saved = "";
+  private timer = 0;
+  private checking: AbortController | null = null;
+  private errors = 0;
+  /** Changes of the form, one after the other: each works on the text that the last one left. */
+  private edits: Promise<void> = Promise.resolve();
+
+  constructor(readonly name: string, schema: SchemaSection[], private readonly started: (run: string) => void) {
+    this.form = new Form(schema, { set: (path, value) => this.change(path, value) });
+    this.text.addEventListener("input", () => this.typed());
+    this.text.addEventListener("scroll", () => (this.lines.scrollTop = this.text.scrollTop));
+    this.saveButton.addEventListener("click", () => void this.save());
+    this.startButton.addEventListener("click", () => void this.start());
+    this.element = h("section", { class: "case", "aria-labelledby": "case-name" },
+      h("div", { class: "head" },
+        h("header", { class: "bar" }, h("h1", { id: "case-name" }, name), this.status, this.saveButton, this.startButton), this.problems),
+      h("div", { class: "sides" }, this.form.element,
+        h("div", { class: "text-side" }, h("div", { class: "editor" }, this.lines, this.text), this.summary)));
+    addEventListener("beforeunload", (event) => {
+      if (this.element.isConnected && this.changed) event.preventDefault();
+    });
+  }
+
+  get changed(): boolean {
+    return this.text.value !== this.saved;
+  }
+
+  async open(): Promise<void> {
+    const { text, digest } = await api.open(this.name);
+    this.text.value = this.saved = text;
+    this.digest = digest;
+    await this.check();
+  }
+
+  private change(path: string, value: string | null): void {
+    this.edits = this.edits.then(async () => {
+      try {
+        const { text } = value === null ? await api.unset(this.text.value, path) : await api.set(this.text.value, path, value);
+        this.text.value = text;
+        await this.check();
+      } catch (error) {
+        this.say((error as Error).message);
+      }
+    });
+  }
+
+  private typed(): void {
+    this.tellChanged();
+    clearTimeout(this.timer);
+    this.timer = setTimeout(() => void this.check(), PAUSE);
+  }
+
+  private tellChanged(): void {
+    this.say(this.changed ? "not saved" : "");
+    this.saveButton.disabled = !this.changed;
+  }
+
+  private say(words: string): void {
+    this.status.textContent = words;
+  }
+
+  private async check(): Promise<void> {
+    this.checking?.abort();
+    const mine = (this.checking = new AbortController());
+    try {
+      const judgement = await api.check(this.name, this.text.value, mine.signal);
+      if (this.checking === mine) this.show(judgement);
+    } catch (error) {
+      if (!mine.signal.aborted) this.say((error as Error).message);
+    }
+  }
+
+  private show(judgement: Judgement): void {
+    this.errors = judgement.problems.filter((p) => p.severity === "error").length;
+    this.tellChanged();
+    this.startButton.disabled = this.errors > 0;
+    this.problems.replaceChildren(...judgement.problems.slice(0, 20).map((p) => this.problem(p)));
+    const faulty = new Map(judgement.problems.map((p) => [p.line, p.severity]));
+    const count = this.text.value.split("\n").length;
+    this.lines.replaceChildren(...[...Array(count).keys()].map((n) => h("span", { class: faulty.get(n + 1) ?? "" }, String(n + 1))));
+    if (judgement.values) this.form.show(judgement.values, judgement.problems);
+    this.summary.classList.toggle("stale", !judgement.check); // until the faults are mended: what it was before
+    if (judgement.check) this.summary.replaceChildren(...(judgement.drawing ? [drawingView(judgement.drawing)] : []), ...this.facts(judgement));
+  }
+
+  private problem(p: Problem): HTMLElement {
+    const go = h("button", { type: "button", class: "where" }, p.line ? `line ${p.line}` : p.key || "case");
+    go.addEventListener("click", () => p.line && this.goTo(p.line));
+    return h("li", { class: p.severity }, go, " ", p.key ? h("code", {}, p.key) : null, p.key ? ": " : null, p.what,
+      p.expected ? h("span", { class: "more" }, `expected: ${p.expected}`) : null,
+      p.nearest ? h("span", { class: "more" }, `nearest: ${p.nearest}`) : null,
+      p.example ? h("span", { class: "more" }, "example: ", h("code", {}, p.example)) : null);
+  }
+
+  private goTo(line: number): void {
+    const lines = this.text.value.split("\n");
+    const begin = lines.slice(0, line - 1).reduce((sum, l) => sum + l.length + 1, 0);
+    this.text.focus();
+    this.text.setSelectionRange(begin, begin + (lines[line - 1]?.length ?? 0));
+    this.text.scrollTop = (line - 4) * parseFloat(getComputedStyle(this.text).lineHeight);
+  }
+
+  private facts({ check }: Judgement): HTMLElement[] {
+    if (!check) return [];
+    const rows: [string, string][] = [];
+    if (check.cells) rows.push(["cells", thousands(check.cells)]);
+    if (check.expected_wall_time_s !== undefined) rows.push(["time", `about ${duration(Math.max(1, Math.round(check.expected_wall_time_s)))}`]);
+    for (const b of check.bodies) {
+      const size = b.size_m.map((v) => fixed(v * 1e3, 1)).join(" \u00d7 ");
+      rows.push([b.name, `${size} mm, ${fixed(b.mass_kg * 1e3, 2)} g${b.cells_across ? `, ${fixed(b.cells_across, 1)} cells across` : ""}`]);
+      if (b.over_jet_s) rows.push(["", `over the jet from ${fixed(b.over_jet_s[0] * 1e3, 1)} to ${fixed(b.over_jet_s[1] * 1e3, 1)} ms`]);
+    }
+    const list = h("dl", { class: "facts" }, ...rows.flatMap(([name, value]) => [h("dt", {}, name), h("dd", {}, value)]));
+    const assumptions = h("details", { class: "assumed" }, h("summary", {}, `${check.assumptions.length} assumptions, since the case does not say`),
+      h("ul", {}, ...check.assumptions.map((a) => h("li", {}, h("code", {}, `${a.key} = ${a.value}`), ` ${a.what} (${a.reason})`))));
+    return check.assumptions.length ? [list, assumptions] : [list];
+  }
+
+  async save(): Promise<boolean> {
+    try {
+      const text = this.text.value;
+      this.digest = (await api.save(this.name, text, this.digest)).digest;
+      this.saved = text;
+      this.tellChanged();
+      return true;
+    } catch (error) {
+      this.say((error as Error).message);
+      return false;
+    }
+  }
+
+  private async start(): Promise<void> {
+    this.startButton.disabled = true; // one click, one run
+    try {
+      await this.edits;
+      if (this.changed && !(await this.save())) return;
+      this.started((await api.start(this.name)).run);
+    } catch (error) {
+      this.say((error as Error).message);
+    } finally {
+      this.startButton.disabled = this.errors > 0;
+    }
+  }
+
+  /** A shape was dropped: the first body takes it. */
+  async useShape(file: string): Promise<void> {
+    for (const [key, value] of [["shape", "mesh"], ["file", file]] as const) this.change(`body.0.${key}`, JSON.stringify(value));
+    await this.edits;
+  }
+}

@@ -1,0 +1,33 @@
+#pragma once
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace ejecta {
+
+/// The folder that the workbench shows. Nothing outside it can be named.
+class Folder {
+ public:
+  /// Throws InputError where it is no directory.
+  explicit Folder(const std::filesystem::path& path);
+
+  const std::filesystem::path& path() const { return path_; }
+  /// The file or directory of a name such as "rocks/flat.toml"; it need not be there. Throws InputError for
+  /// one that leads, or links, out of the folder.
+  std::filesystem::path inside(const std::string& name) const;
+
+  /// Names of case files and of directories of runs, sorted.
+  struct Content {
+    std::vector<std::string> cases, runs;
+  };
+  Content content() const;
+
+ private:
+  std::filesystem::path path_;  // without links
+};
+
+/// Throws InputError unless it can be the name of a file here: letters, digits, blanks, - _ . and the
+/// extension.
+void require_file_name(const std::string& name, const std::string& extension);
+
+}  // namespace ejecta

@@ -1,0 +1,361 @@
+"""The server of the workbench: serve_test.py PROGRAM SOURCE SCRATCH. What it refuses, and that runs outlive it."""
+
+import http.client
+import json
+import os
+import re
+import shutil
+import signal
+import socket
+import subprocess
+import sys
+import threading
+import time
+import unittest
+from pathlib import Path
+
+program, source, scratch = sys.argv[1], Path(sys.argv[2]), Path(sys.argv[3])
+
+BALL = """[run]
+end_time = "20 ms"
+[flow]
+solver = "none"
+[[body]]   # the only one
+name = "ball"
+shape = "sphere"
+diameter = "10 mm"
+"""
+
+
+class Server:
+    def __init__(self, folder):
+        self.folder = folder
+        self.process = subprocess.Popen([program, "serve", folder], stdout=subprocess.PIPE, text=True)
+        line = self.process.stdout.readline()
+        port, self.token = re.fullmatch(r"http://127\.0\.0\.1:(\d+)/\?token=([0-9a-f]{48})\n", line).groups()
+        self.port = int(port)
+
+    def ask(self, method, path, body=None, headers=None, token=True):
+        """Status, headers and content of an answer."""
+        connection = http.client.HTTPConnection("127.0.0.1", self.port, timeout=30)
+        all_headers = {"Cookie": f"ejecta-{self.port}={self.token}"} if token else {}
+        all_headers |= headers or {}
+        if isinstance(body, dict):
+            body = json.dumps(body)
+        connection.request(method, path, body, all_headers)
+        answer = connection.getresponse()
+        content = answer.read()
+        connection.close()
+        return answer.status, answer.headers, content
+
+    def get(self, path):
+        status, _, content = self.ask("GET", path)
+        assert status == 200, content
+        return json.loads(content)
+
+    def post(self, path, **body):
+        status, _, content = self.ask("POST", path, body)
+        return status, json.loads(content)
+
+    def run(self, name):
+        return next((run for run in self.get("/api/runs") if run["name"] == name), None)
+
+    def wait(self, name, states, seconds=120):
+        end = time.monotonic() + seconds
+        while (run := self.run(name))["state"] not in states:
+            assert time.monotonic() < end, run
+            time.sleep(0.05)
+        return run
+
+    def end(self, how=signal.SIGINT):
+        self.process.send_signal(how)
+        self.process.wait(20)
+        self.process.stdout.close()
+
+
+class ServerCase(unittest.TestCase):
+    def setUp(self):
+        self.folder = scratch / self.id().split(".")[-1]
+        shutil.rmtree(self.folder, ignore_errors=True)
+        self.folder.mkdir(parents=True)
+        (self.folder / "ball.toml").write_text(BALL)
+        (scratch / "secret.toml").write_text("[run]\ntitle = 'secret'\n")
+        self.server = Server(self.folder)
+        self.addCleanup(self.server.end)
+
+    def assert_alive(self):
+        self.assertEqual(self.server.ask("GET", "/api/cases")[0], 200)
+
+
+class Refuses(ServerCase):
+    def test_who_has_no_token(self):
+        for path in ("/", "/api/cases", "/api/runs", "/api/events", "/files/ball.toml", "/nothing"):
+            self.assertEqual(self.server.ask("GET", path, token=False)[0], 403, path)
+        for token in ("", "0" * 48, self.server.token[:-1], self.server.token + "0"):
+            self.assertEqual(self.server.ask("GET", f"/api/cases?token={token}", token=False)[0], 403)
+            self.assertEqual(self.server.ask("GET", "/", headers={"Cookie": f"ejecta-{self.server.port}={token}"}, token=False)[0], 403)
+        self.assertEqual(self.server.ask("POST", "/api/start", {"case": "ball.toml"}, token=False)[0], 403)
+        self.assertEqual(self.server.get("/api/runs"), [])
+
+    def test_other_hosts_and_origins(self):
+        for host in ("evil.example", f"evil.example:{self.server.port}", "127.0.0.1", f"127.0.0.1.evil.example:{self.server.port}", ""):
+            self.assertEqual(self.server.ask("GET", "/api/cases", headers={"Host": host})[0], 403, host)
+        for origin in ("http://evil.example", "null", "https://127.0.0.1:" + str(self.server.port), "http://127.0.0.1:1"):
+            self.assertEqual(self.server.ask("POST", "/api/start", {"case": "ball.toml"}, {"Origin": origin})[0], 403, origin)
+        own = {"Host": f"localhost:{self.server.port}", "Origin": f"http://localhost:{self.server.port}"}
+        self.assertEqual(self.server.ask("GET", "/api/cases", headers=own)[0], 200)
+
+    def test_it_listens_on_this_machine_only(self):
+        ports = [line.split()[1] for line in Path("/proc/net/tcp").read_text().splitlines()[1:] if line.split()[3] == "0A"]
+        mine = [p for p in ports if int(p.split(":")[1], 16) == self.server.port]
+        self.assertEqual(mine, [f"0100007F:{self.server.port:04X}"])
+
+    def test_paths_out_of_the_folder(self):
+        os.symlink(scratch / "secret.toml", self.folder / "link.toml")
+        for name in ("../secret.toml", "a/../../secret.toml", str(scratch / "secret.toml"), "link.toml", "", "..", "\0", "/etc/passwd"):
+            status, answer = self.server.post("/api/open", name=name)
+            self.assertEqual(status, 400, name)
+            self.assertNotIn("text", answer)
+            for call, key in (("start", "case"), ("stop", "run"), ("resume", "run")):
+                self.assertEqual(self.server.post(f"/api/{call}", **{key: name})[0], 400, (call, name))
+        for path in ("/files/../secret.toml", "/files/%2e%2e/secret.toml", "/files/..%2fsecret.toml", "/files//etc/passwd", "/files/link.toml"):
+            status, _, content = self.server.ask("GET", path)
+            self.assertIn(status, (400, 404), path)
+            self.assertNotIn(b"secret'", content)
+        for name in ("../new.toml", "a/b.toml", ".toml", "x.sh", "x" * 300 + ".toml", "new\n.toml"):
+            self.assertEqual(self.server.post("/api/new", name=name)[0], 400, name)
+            self.assertEqual(self.server.ask("POST", f"/api/upload?name={name.strip()!a}", b"solid")[0], 400)
+        self.assertEqual(sorted(p.name for p in self.folder.iterdir()), ["ball.toml", "link.toml"])
+
+    def test_what_is_no_request(self):
+        for body in ("", "{", "[]", "3", '{"name": 5}', '{"nam": "ball.toml"}', "\xff", '{"name":' * 2000):
+            for path in ("open", "save", "check", "set", "start", "stop", "new"):
+                status, _, content = self.server.ask("POST", f"/api/{path}", body.encode("latin-1"))
+                self.assertEqual(status, 400, (path, body[:20]))
+                self.assertIn("error", json.loads(content))
+        self.assert_alive()
+
+    def test_oversized_and_truncated_bodies(self):
+        large = json.dumps({"name": "ball.toml", "text": "#" * (2 << 20)})
+        self.assertEqual(self.server.ask("POST", "/api/check", large)[0], 413)
+        connection = socket.create_connection(("127.0.0.1", self.server.port))
+        head = f"POST /api/check HTTP/1.1\r\nHost: 127.0.0.1:{self.server.port}\r\nCookie: ejecta-{self.server.port}={self.server.token}\r\n"
+        connection.sendall(f"{head}Content-Length: 999999999999\r\n\r\n".encode())
+        self.assertRegex(connection.recv(100).decode(), "413|400")
+        connection.close()
+        connection = socket.create_connection(("127.0.0.1", self.server.port))
+        connection.sendall(f"{head}Content-Length: 100\r\n\r\n{{".encode())
+        connection.close()  # in the middle
+        self.assert_alive()
+
+    def test_slow_clients_and_idle_streams(self):
+        kept = []
+        for _ in range(24):  # that say half a request and wait
+            connection = socket.create_connection(("127.0.0.1", self.server.port))
+            connection.sendall(b"GET /api/ca")
+            kept.append(connection)
+        streams = []
+        for _ in range(64):
+            connection = socket.create_connection(("127.0.0.1", self.server.port))
+            connection.sendall(f"GET /api/events HTTP/1.1\r\nHost: 127.0.0.1:{self.server.port}\r\n"
+                               f"Cookie: ejecta-{self.server.port}={self.server.token}\r\n\r\n".encode())
+            streams.append(connection)
+        start = time.monotonic()
+        self.assert_alive()
+        self.assertLess(time.monotonic() - start, 15)
+        served = 0
+        for connection in streams:
+            connection.settimeout(15)
+            served += b"200" in connection.recv(20)
+        self.assertGreaterEqual(served, 16)
+        for connection in kept + streams:
+            connection.close()
+        time.sleep(6)  # until closed pages are noticed
+        self.assert_alive()
+
+    def test_reports_cannot_ask_the_server(self):
+        (self.folder / "page.html").write_text("<script>fetch('/api/runs')</script>")
+        _, headers, _ = self.server.ask("GET", "/files/page.html")
+        self.assertIn("sandbox", headers["Content-Security-Policy"])
+        self.assertNotIn("allow-same-origin", headers["Content-Security-Policy"])
+        (self.folder / "script.sh").write_text("echo")
+        self.assertEqual(self.server.ask("GET", "/files/script.sh")[0], 404)
+
+
+class Cases(ServerCase):
+    def test_the_page_with_its_token(self):
+        status, headers, _ = self.server.ask("GET", f"/?token={self.server.token}", token=False)
+        self.assertEqual((status, headers["Location"]), (303, "/"))
+        self.assertIn("HttpOnly; SameSite=Strict", headers["Set-Cookie"])
+        status, headers, _ = self.server.ask("GET", "/")
+        self.assertIn(status, (200, 501))  # 501: built without npm
+
+    def test_open_change_save(self):
+        _, opened = self.server.post("/api/open", name="ball.toml")
+        self.assertEqual(opened["text"], BALL)
+        _, changed = self.server.post("/api/set", text=opened["text"], key="body.0.diameter", value='"12 mm"')
+        self.assertEqual(changed["text"], BALL.replace("10 mm", "12 mm"))
+        status, saved = self.server.post("/api/save", name="ball.toml", text=changed["text"], digest=opened["digest"])
+        self.assertEqual((self.folder / "ball.toml").read_text(), changed["text"])
+        status, answer = self.server.post("/api/save", name="ball.toml", text="x", digest=opened["digest"])
+        self.assertEqual(status, 409)
+        self.assertIn("changed elsewhere", answer["error"])
+        _, back = self.server.post("/api/set", text=changed["text"], key="body.0.diameter", remove=True)
+        self.assertNotIn("diameter", back["text"])
+        self.assertEqual(self.server.post("/api/set", text="[run", key="run.title", value='"x"')[0], 400)
+
+    def test_new(self):
+        self.assertEqual(self.server.post("/api/new", name="mine.toml")[0], 200)
+        self.assertEqual(self.server.get("/api/cases")["cases"], ["ball.toml", "mine.toml"])
+        self.assertEqual(self.server.post("/api/new", name="mine.toml")[0], 409)
+
+    def test_check_says_what_the_program_says(self):
+        bad = BALL.replace('"10 mm"', '"10 kg"').replace("[flow]", "[flow]\nsolvr = 1")
+        _, judged = self.server.post("/api/check", name="ball.toml", text=bad)
+        (self.folder / "bad.toml").write_text(bad)
+        said = json.loads(subprocess.run([program, "check", "--json", self.folder / "bad.toml"], capture_output=True, text=True).stdout)
+        strip = [{k: v for k, v in p.items() if k != "file"} for p in said[0]["problems"]]
+        self.assertEqual([{k: v for k, v in p.items() if k != "file"} for p in judged["problems"]], strip)
+        self.assertEqual(judged["values"]["body.0.shape"], {"text": '"sphere"', "given": True})
+        self.assertNotIn("check", judged)
+        _, judged = self.server.post("/api/check", name="ball.toml", text=BALL)
+        self.assertEqual(judged["check"]["bodies"][0]["name"], "ball")
+        self.assertEqual(len(judged["drawing"]["bodies"]), 1)
+        for text in ("", "[", "\x00", "a = " + "[" * 5000):
+            _, judged = self.server.post("/api/check", name="ball.toml", text=text)
+            self.assertTrue(judged["problems"], text)
+
+    def test_the_checker_keeps_up_with_typing(self):
+        text = (source / "cases" / "tutorial.toml").read_text()
+        times = []
+        for n in range(20):
+            start = time.monotonic()
+            self.server.post("/api/check", name="ball.toml", text=text + f"# {n}\n")
+            times.append(time.monotonic() - start)
+        print(f"check: median {1e3 * sorted(times)[10]:.1f} ms")
+        self.assertLess(sorted(times)[10], 0.1)
+
+    def test_schema_has_every_section(self):
+        names = {section["name"] for section in self.server.get("/api/schema")}
+        self.assertTrue({"run", "valve", "body", "boundary.z_min.patch", "splitter"} <= names)
+
+    def test_shapes_are_taken(self):
+        status, _, content = self.server.ask("POST", "/api/upload?name=rock.stl", b"solid rock\nendsolid\n")
+        self.assertEqual((status, json.loads(content)["name"]), (200, "rock.stl"))
+        self.assertEqual(self.server.ask("POST", "/api/upload?name=rock.stl", b"solid")[0], 409)
+
+
+class Runs(ServerCase):
+    def setUp(self):
+        super().setUp()
+        text = (source / "tests" / "app" / "small-ejection.toml").read_text()
+        (self.folder / "slow.toml").write_text(text.replace('"6 ms"', '"60 ms"', 1))
+
+    def test_to_its_end(self):
+        status, answer = self.server.post("/api/start", case="ball.toml")
+        self.assertEqual((status, answer), (200, {"run": "ball.run"}))
+        run = self.server.wait("ball.run", ("done", "failed"))
+        self.assertEqual((run["state"], run["case"]), ("done", "ball.toml"))
+        self.assertTrue(run["report"])
+        self.assertEqual(self.server.ask("GET", "/files/ball.run/report.html")[0], 200)
+        self.assertEqual(self.server.post("/api/start", case="ball.toml")[1], {"run": "ball-2.run"})
+        self.server.wait("ball-2.run", ("done",))
+
+    def test_results_together(self):
+        self.server.post("/api/start", case="ball.toml")
+        self.server.wait("ball.run", ("done",))
+        status, headers, page = self.server.ask("GET", "/runs/compare.html?run=ball.run&run=ball.run")
+        self.assertEqual(status, 200)
+        self.assertIn("sandbox", headers["Content-Security-Policy"])
+        status, _, table = self.server.ask("GET", "/runs/results.csv?run=ball.run")
+        self.assertEqual(len(table.decode().splitlines()), 2)
+        status, _, book = self.server.ask("GET", "/runs/results.xlsx?run=ball.run")
+        self.assertTrue((status, book[:2]) == (200, b"PK") or (status == 400 and b"built without" in book))
+        for query in ("", "?run=../x", "?run=ball.toml", "?" + "run=ball.run&" * 60):
+            self.assertEqual(self.server.ask("GET", "/runs/results.csv" + query)[0], 400)
+
+    def test_many_clicks_are_one_run(self):
+        answers = []
+        threads = [threading.Thread(target=lambda: answers.append(self.server.post("/api/start", case="slow.toml")[0])) for _ in range(8)]
+        [t.start() for t in threads]
+        [t.join() for t in threads]
+        self.assertEqual(sorted(answers), [200] + [400] * 7)
+        self.assertEqual([run["name"] for run in self.server.get("/api/runs")], ["slow.run"])
+        self.server.post("/api/stop", run="slow.run")
+        self.server.wait("slow.run", ("stopped", "failed"))
+
+    def test_stop_and_resume(self):
+        self.server.post("/api/start", case="slow.toml")
+        self.server.wait("slow.run", ("running",))
+        self.assertEqual(self.server.post("/api/stop", run="slow.run")[0], 200)
+        self.server.wait("slow.run", ("stopped",))
+        self.assertEqual(self.server.post("/api/stop", run="slow.run")[0], 400)
+        self.assertEqual(self.server.post("/api/resume", run="slow.run")[0], 200)
+        self.assertEqual(self.server.post("/api/resume", run="slow.run")[0], 400, "it runs already")
+        self.server.wait("slow.run", ("running",))
+        self.server.post("/api/stop", run="slow.run")
+        self.server.wait("slow.run", ("stopped",))
+
+    def test_the_server_dies_and_comes_back(self):
+        self.server.post("/api/start", case="slow.toml")
+        self.server.wait("slow.run", ("running",))
+        self.server.end(signal.SIGKILL)
+        self.server = Server(self.folder)
+        self.addCleanup(lambda s=self.server: s.process.poll() is None and s.end())
+        self.assertEqual(self.server.run("slow.run")["state"], "running")
+        self.assertEqual(self.server.post("/api/start", case="slow.toml")[0], 400, "it runs already")
+        process = json.loads((self.folder / "slow.run" / "progress.json").read_text())["process"]
+        os.kill(process, signal.SIGKILL)
+        run = self.server.wait("slow.run", ("failed",), 10)  # a dead run is said to be dead
+        self.assertEqual(self.server.post("/api/stop", run="slow.run")[0], 400)
+
+    def test_one_that_cannot_start_says_why(self):
+        (self.folder / "bad.toml").write_text(BALL.replace("10 mm", "10 kg"))
+        self.server.post("/api/start", case="bad.toml")
+        run = self.server.wait("bad.run", ("failed",))
+        self.assertIn("body.0.diameter", run["said"])
+
+    def test_events(self):
+        connection = http.client.HTTPConnection("127.0.0.1", self.server.port, timeout=30)
+        connection.request("GET", "/api/events", headers={"Cookie": f"ejecta-{self.server.port}={self.server.token}"})
+        stream = connection.getresponse()
+        self.server.post("/api/start", case="ball.toml")
+        end = time.monotonic() + 60
+        while time.monotonic() < end:
+            line = stream.readline().decode()
+            if line.startswith("data: ") and any(run["state"] == "done" for run in json.loads(line[6:])):
+                connection.close()
+                return
+        self.fail("no event told of the end")
+
+    def test_a_thousand_runs(self):
+        self.server.post("/api/start", case="ball.toml")
+        self.server.wait("ball.run", ("done",))
+        for n in range(1000):
+            copy = self.folder / f"copy-{n}.run"
+            copy.mkdir()
+            for name in ("manifest.json", "result.json", "progress.json"):
+                shutil.copy(self.folder / "ball.run" / name, copy)
+        self.server.get("/api/runs")
+        start = time.monotonic()
+        self.assertEqual(len(self.server.get("/api/runs")), 1001)
+        seconds = time.monotonic() - start
+        print(f"1001 runs listed in {1e3 * seconds:.0f} ms")
+        self.assertLess(seconds, 1.0)
+
+
+class Starting(unittest.TestCase):
+    def test_without_a_folder(self):
+        said = subprocess.run([program, "serve", "/no/such/folder"], capture_output=True, text=True)
+        self.assertEqual(said.returncode, 2)
+        self.assertIn("example:", said.stderr)
+
+    def test_ends_on_a_signal(self):
+        server = Server(scratch)
+        server.end()
+        self.assertEqual(server.process.returncode, 0)
+
+
+if __name__ == "__main__":
+    scratch.mkdir(parents=True, exist_ok=True)
+    unittest.main(argv=[sys.argv[0], *sys.argv[4:]], verbosity=1)
