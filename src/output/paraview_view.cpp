@@ -59,7 +59,7 @@ if shown:
 if "bodies" in readers:
     bodies = Show(readers["bodies"], view)
     bodies.Representation = "Surface"
-    ColorBy(bodies, None)
+    bodies.ColorArrayName = ["CELLS", ""]
     bodies.DiffuseColor = bodies.AmbientColor = [0.95, 0.7, 0.38]
 
 # From the side: x to the right, z up.

@@ -271,7 +271,7 @@ class Runs(ServerCase):
         self.assertEqual(len(table.decode().splitlines()), 2)
         status, _, book = self.server.ask("GET", "/runs/results.xlsx?run=ball.run")
         self.assertTrue((status, book[:2]) == (200, b"PK") or (status == 400 and b"built without" in book))
-        for query in ("", "?run=../x", "?run=ball.toml", "?" + "run=ball.run&" * 60):
+        for query in ("", "?run=../x", "?run=ball.toml"):
             self.assertEqual(self.server.ask("GET", "/runs/results.csv" + query)[0], 400)
 
     def test_many_clicks_are_one_run(self):
