@@ -4,6 +4,7 @@ program against it, runs both from elsewhere, and looks for paths of the source 
 import os
 import pathlib
 import shutil
+import signal
 import subprocess
 import sys
 
@@ -40,6 +41,17 @@ complete = '. "$0"; COMP_WORDS=(ejecta "$@"); COMP_CWORD=$#; _ejecta; echo "${CO
 for words, expected in (("val", "validate"), ("explain valve.rise", "valve.rise_time"), ("run --res", "--resume")):
     answer = run("bash", "-c", complete, completion, *words.split(), capture_output=True, text=True).stdout.split()
     assert expected in answer, (words, answer)
+
+# The Python module and the server, where they were built.
+packages = prefix / "lib" / "python3" / "dist-packages"
+if (packages / "ejecta").is_dir():
+    script = f"import ejecta; assert ejecta.check('tutorial')['cells'] > 0; assert ejecta.running.program() == {str(ejecta)!r}"
+    run("/usr/bin/python3", "-B", "-c", script, cwd=elsewhere, env=dict(os.environ, PYTHONPATH=str(packages)))
+if (prefix / "libexec" / "ejecta" / "ejecta-serve").exists():
+    server = subprocess.Popen([ejecta, "serve", elsewhere], stdout=subprocess.PIPE, text=True)
+    assert server.stdout.readline().startswith("http://127.0.0.1:")
+    server.send_signal(signal.SIGINT)
+    assert server.wait(20) == 0
 
 held = [p for p in prefix.rglob("*") if p.is_file() and os.fsencode(source) + b"/" in p.read_bytes()]
 assert not held, f"paths of the source tree in {held}"
