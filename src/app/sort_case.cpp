@@ -30,8 +30,7 @@ constexpr double kTellEvery = 2.0;      ///< s
 /// The directory of a sorter: state.json says how far it is, and of what.
 class SortDirectory {
  public:
-  SortDirectory(fs::path path, const std::string& input, bool force)
-      : path_(std::move(path)), input_(input) {
+  SortDirectory(fs::path path, const std::string& input, bool force) : path_(std::move(path)), input_(input) {
     const bool mine = fs::exists(state());
     if (!mine && holds_anything())
       throw InputError(fmt::format("{} is there and is no directory of a sorter\n  expected: another --out",

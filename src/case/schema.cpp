@@ -84,8 +84,10 @@ std::vector<Section> sections(Case& c) {
            table("sorter", "A whole sorter, feed to products: `ejecta sort`", c.sorter, &c.sorter.enabled),
            table("sorter.feed", "How particles lie on the belt", c.feed, &c.sorter.enabled),
            list("sorter.class", "Particles of one kind", c.classes),
-           table("sorter.camera", "What looks at the belt, and what it makes of it", c.camera, &c.sorter.enabled),
-           table("sorter.controller", "When and how long valves are told to open", c.controller, &c.sorter.enabled),
+           table("sorter.camera", "What looks at the belt, and what it makes of it", c.camera,
+                 &c.sorter.enabled),
+           table("sorter.controller", "When and how long valves are told to open", c.controller,
+                 &c.sorter.enabled),
            table("sorter.manifold", "The row of valves across the belt", c.manifold, &c.sorter.enabled)})
     all.push_back(std::move(s));
   return all;

@@ -210,10 +210,11 @@ std::vector<FeedParticle> Feed::even_cell(std::int64_t cell) const {
 
 std::vector<FeedParticle> Feed::cells(std::int64_t first, std::int64_t last) const {
   if (feed_.presentation == Presentation::file) {
-    std::vector<FeedParticle> list;
-    for (const FeedParticle& p : file_)
-      if (cell_of(p.x) >= first && cell_of(p.x) < last) list.push_back(p);
-    return list;
+    const auto from = [&](std::int64_t cell) {  // the first particle that lies in it or behind it
+      return std::lower_bound(file_.begin(), file_.end(), static_cast<double>(cell) * cell_length_,
+                              [](const FeedParticle& p, double x) { return p.x < x; });
+    };
+    return {from(first), from(last)};
   }
   const bool monolayer = feed_.presentation == Presentation::monolayer;
   std::vector<FeedParticle> all, before, after;

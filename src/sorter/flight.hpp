@@ -13,8 +13,8 @@ namespace ejecta {
 /// normal velocity times a coefficient. From resolved runs of particles of two sizes (docs/theory/sorter.md),
 /// of which none is a shot of a sorter; linear between them, constant beyond.
 struct AirCoefficients {
-  double small = 10e-3, large = 20e-3;             ///< m, the two sizes
-  double sharp_small = 1.02, sharp_large = 0.88;   ///< of flat faces with edges: front and back together
+  double small = 10e-3, large = 20e-3;              ///< m, the two sizes
+  double sharp_small = 1.02, sharp_large = 0.88;    ///< of flat faces with edges: front and back together
   double round_small = 0.705, round_large = 0.472;  ///< of round surfaces
   double front = 2.0 / 3.0;  ///< part of it on what faces the air; the rest pulls at what faces away
   double widening = 1.5;     ///< of the jet, with the same momentum: a body spreads it over its face
