@@ -55,6 +55,30 @@ Correction correction_of(const std::vector<std::array<double, 2>>& samples) {
   return c;
 }
 
+/// How the fast tier's gains of velocity differ from those of the runs.
+struct GainErrors {
+  int bodies = 0, same = 0, gains = 0;
+  double sum = 0.0, squares = 0.0;
+  void add(const ResolvedBody& run, const ShotBody& fast) {
+    constexpr double kLeastGain = 0.1;  // m/s: smaller ones eject nothing
+    ++bodies;
+    same += run.ejected == fast.ejected;
+    if (run.gain < kLeastGain) return;
+    const double error = fast.gain / run.gain - 1.0;
+    ++gains;
+    sum += error;
+    squares += error * error;
+  }
+  Json json() const {
+    Json r{{"bodies", bodies}, {"same_verdict", same}, {"gains_above_0_1_m_s", gains}};
+    if (gains > 0) {
+      r["gain_bias"] = sum / gains;
+      r["gain_rms_error"] = std::sqrt(squares / gains);
+    }
+    return r;
+  }
+};
+
 double error_of(const Share& s) { return s.known ? (s.high - s.low) / (2.0 * 1.959964) : 0.0; }
 
 }  // namespace
@@ -104,7 +128,9 @@ Json resolve_shots(const Case& c, const Sorter& sorter, const SorterState& state
       return nullptr;
   }
   std::vector<std::array<double, 2>> number, mass;
-  int bodies = 0, same = 0, failed = 0, computed = 0;
+  int failed = 0, computed = 0;
+  GainErrors all;
+  std::map<std::string, GainErrors> by_class;
   for (const DrawnShot& d : drawn) {
     std::array<double, 2> more_number{}, more_mass{};
     if (d.any) {
@@ -114,13 +140,13 @@ Json resolve_shots(const Case& c, const Sorter& sorter, const SorterState& state
         continue;
       }
       ++computed;
-      const std::vector<bool> verdicts = resolved_verdicts(store.result(task).at("result"));
+      const std::vector<ResolvedBody> runs_bodies = resolved_bodies(store.result(task).at("result"));
       for (std::size_t b = 0; b < d.shot.bodies.size(); ++b) {
         const ShotBody& body = d.shot.bodies[b];
-        ++bodies;
-        same += verdicts[b] == body.ejected;
+        all.add(runs_bodies[b], body);
+        by_class[c.classes[static_cast<std::size_t>(body.particle.kind)].name].add(runs_bodies[b], body);
         if (!body.counts) continue;
-        const double more = d.weight * (int(verdicts[b]) - int(body.ejected));
+        const double more = d.weight * (int(runs_bodies[b].ejected) - int(body.ejected));
         const std::size_t side = c.classes[static_cast<std::size_t>(body.particle.kind)].eject ? 0 : 1;
         more_number[side] += more;
         more_mass[side] += more * body.particle.mass;
@@ -129,10 +155,9 @@ Json resolve_shots(const Case& c, const Sorter& sorter, const SorterState& state
     number.push_back(more_number);
     mass.push_back(more_mass);
   }
-  Json r{{"resolved_shots", computed},
-         {"resolved_shots_failed", failed},
-         {"resolved_bodies", bodies},
-         {"resolved_bodies_same_verdict", same}};
+  Json r{
+      {"resolved_shots", computed}, {"resolved_shots_failed", failed}, {"fast_against_resolved", all.json()}};
+  for (const auto& [name, errors] : by_class) r["fast_against_resolved"][name] = errors.json();
   if (number.size() < 2) return r;
   const auto& sums = state.products.sums;
   for (const bool by_mass : {false, true}) {

@@ -81,9 +81,10 @@ Case resolved_case(const Case& sorter, const Shot& shot) {
   return c;
 }
 
-std::vector<bool> resolved_verdicts(const nlohmann::ordered_json& result) {
-  std::vector<bool> list;
-  for (const auto& body : result.at("bodies")) list.push_back(body.value("outcome", "") == "ejected");
+std::vector<ResolvedBody> resolved_bodies(const nlohmann::ordered_json& result) {
+  std::vector<ResolvedBody> list;
+  for (const auto& body : result.at("bodies"))
+    list.push_back({body.value("outcome", "") == "ejected", body.value("velocity_change_z_m_s", 0.0)});
   return list;
 }
 

@@ -13,6 +13,7 @@ struct ShotBody {
   double y = 0.0;        ///< m, from the middle of the valves that blow
   bool counts = false;   ///< it is this shot's, and no other's
   bool ejected = false;  ///< by the fast tier, by this shot alone
+  double gain = 0.0;     ///< m/s, of vertical velocity, likewise
 };
 
 /// The seam between the tiers: the bodies within reach of some valves, and their command. Plain data.

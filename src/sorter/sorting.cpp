@@ -130,8 +130,12 @@ Shot Sorter::shot(const Scene& s, std::span<const ValveCommand> commands, std::s
     const FlightEnd end = ejection_.fly(p, at, y, blows, false);
     const bool member = s.object_of[n] == c.object;
     if (!end.touched && !member) continue;
-    ShotBody body{
-        .particle = p, .at = at - c.from, .y = y - middle, .counts = member, .ejected = end.ejected()};
+    ShotBody body{.particle = p,
+                  .at = at - c.from,
+                  .y = y - middle,
+                  .counts = member,
+                  .ejected = end.ejected(),
+                  .gain = end.gain};
     const bool other_target =
         !member && s.object_of[n] >= 0 && s.objects[static_cast<std::size_t>(s.object_of[n])].eject;
     if (!member && !other_target) {
