@@ -42,7 +42,7 @@ BodySpec body_of(const Case& c, const ShotBody& shot_body, std::size_t n) {
     case ParticleForm::mesh:
       b.shape = ShapeKind::mesh;
       b.file = k.file;
-      b.scale = p.scale;
+      b.scale = p.scale * p.prototype->file_scale;
   }
   const Eigen::AngleAxisd turned(Quat(Eigen::AngleAxisd(p.yaw, Vec3::UnitZ())) * p.prototype->resting);
   b.rotation_axis = turned.axis();

@@ -27,6 +27,7 @@ struct Prototype {
     Vec3 point, area;
   };
   std::vector<Piece> surface{};
+  double file_scale = 1.0;  ///< of a mesh: this size over that in its file
 };
 
 struct FeedParticle {

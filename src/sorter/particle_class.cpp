@@ -138,9 +138,10 @@ std::vector<Prototype> make_prototypes(const ParticleClassSpec& s, double size, 
       }
       break;
     case ParticleForm::mesh: {
-      const TriangleMesh mesh = read_stl((std::filesystem::path(directory) / s.file).string(), 1.0);
-      const Shape shape = make_mesh(mesh, s.file);
-      list.push_back(make_prototype(shape, middle_dimension(shape), true, 0.0));
+      const std::string path = (std::filesystem::path(directory) / s.file).string();
+      const double scale = size / middle_dimension(make_mesh(read_stl(path, 1.0), s.file));
+      list.push_back(make_prototype(make_mesh(read_stl(path, scale), s.file), size, true, 0.0));
+      list.back().file_scale = scale;
     }
   }
   return list;
