@@ -5,10 +5,10 @@
 #include <cstdio>
 #include <filesystem>
 
-#include "app/exit_code.hpp"
 #include "app/signals.hpp"
 #include "app/sort_runs.hpp"
 #include "base/error.hpp"
+#include "base/exit_code.hpp"
 #include "base/parallel.hpp"
 #include "base/stopwatch.hpp"
 #include "case/write.hpp"
