@@ -12,6 +12,8 @@ import { pathNote, pathView } from "./path";
 import { Player } from "./player";
 import { profileCharts } from "./profile_charts";
 import { replayView } from "./replay_view";
+import { readSort } from "./sort_data";
+import { sortPage } from "./sort_page";
 import { readStudy, studyPage } from "./study_page";
 import {
   assumptionList, bodyCards, costTable, expectationTable, ledgerTable, operatorTable, provenanceTable, resultTable,
@@ -148,6 +150,8 @@ function page(runs: Run[]): HTMLElement {
 async function content(): Promise<[title: string, page: HTMLElement]> {
   const map = readMap();
   if (map) return [map.title, mapPage(map)];
+  const sort = readSort();
+  if (sort) return [sort.title, sortPage(sort)];
   const study = readStudy();
   if (study) return [study.title, studyPage(study)];
   const runs = await readRuns();

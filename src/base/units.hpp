@@ -29,6 +29,7 @@ enum class Dimension {
   stiffness,
   specific_energy,
   dissipation_rate,
+  mass_flow,
   specific_heat
 };
 

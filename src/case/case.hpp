@@ -37,6 +37,10 @@ enum class Motion { free, fixed, prescribed };
 enum class ContactLaw { hertz_mindlin, linear };
 enum class WallKind { plane, plate, box, belt, mesh };
 enum class RunUntil { time, verdict, rest };
+enum class Presentation { independent, monolayer, file };
+enum class ParticleForm { box, rock, sphere, cluster, mesh };
+enum class SizeLaw { one, uniform, lognormal, rosin_rammler, sieves };
+enum class WindowRule { fixed, by_size };
 enum class StudyDesign { grid, list, latin_hypercube, sobol };
 enum class MapLying { given, turned, any };
 enum class CampaignKind { run, jet, jet_sweep, map, study };
@@ -416,6 +420,81 @@ struct CampaignSpec {
   std::vector<CampaignPartSpec> parts;
 };
 
+/// [sorter]: a whole machine, feed to products. Belt speed, flight and plate are those of [launch] and
+/// [splitter], the jet of one valve that of [valve] and [jet].
+struct SorterSpec {
+  bool enabled = false;
+  double throughput = 0.0;   ///< kg/s
+  int particles = 10000;     ///< that pass, about
+  double belt_width = 0.55;  ///< m
+  std::int64_t seed = 1;     ///< of all that chance decides
+  int shown = 300;           ///< particles in the report's view
+};
+
+/// [sorter.feed]: how particles lie on the belt
+struct FeedSpec {
+  Presentation presentation = Presentation::monolayer;
+  double arrival_scatter = 0.0;  ///< s, standard deviation of when a particle comes to the jet
+  double place_scatter = 0.0;    ///< m, and of where across the belt
+  std::string file;              ///< CSV of places, for "file"
+};
+
+/// [[sorter.class]]: particles of one kind
+struct ParticleClassSpec {
+  std::string name;
+  double share = 0.0;  ///< of the mass of the feed
+  bool eject = false;  ///< belongs in the ejected product
+  double density = 2700.0;
+  ParticleForm form = ParticleForm::box;
+  SizeLaw sizes = SizeLaw::one;
+  double size = 0.0;                    ///< m: the middle one of its three dimensions, what a sieve tells
+  double size_to = 0.0;                 ///< m, upper end of "uniform"
+  double spread = 0.0;                  ///< lognormal: of ln(size); Rosin-Rammler: its exponent
+  std::string sieves;                   ///< CSV of sieves
+  double elongation = 1.0;              ///< middle over longest dimension
+  double flatness = 1.0;                ///< shortest over middle dimension
+  std::string file;                     ///< mesh: STL
+  double signal = 0.0;                  ///< what the sensor reads of it, any scale
+  double signal_spread = 0.0;           ///< standard deviation from particle to particle
+  std::optional<double> read_as_eject;  ///< share that is read as to be ejected, instead of signals
+};
+
+/// [sorter.camera]
+struct CameraSpec {
+  int pixels = 2048;                ///< across the belt
+  double gap = 0.5e-3;              ///< m, nearer particles are seen as one
+  int least_pixels = 4;             ///< smaller objects are not seen
+  double noise = 0.0;               ///< of the signal of a pixel, standard deviation
+  std::optional<double> threshold;  ///< between keep and eject
+  double distance = 0.5;            ///< m, from its line to the jets along the path
+  double computing_time = 50e-3;    ///< s, from the last line of an object to its commands
+};
+
+/// [sorter.controller]
+struct ControllerSpec {
+  WindowRule window = WindowRule::fixed;
+  double duration = 8e-3;     ///< s, of a command by the fixed rule
+  double step = 1e-3;         ///< s, commands begin at whole steps; 0: whenever
+  double lead = 6e-3;         ///< s, the command comes before the object's centre (by_size: its front)
+  double quantile = 2.0;      ///< of the errors of time and place that the window covers
+  double time_error = 0.0;    ///< s, standard deviation that it reckons with
+  double place_error = 0.0;   ///< m
+  int valves = 0;             ///< a shot; 0: by the object's width
+  double shortest_on = 0.0;   ///< s
+  double shortest_off = 0.0;  ///< s: shorter breaks are not taken
+};
+
+/// [sorter.manifold]
+struct ManifoldSpec {
+  int valves = 128;
+  double pitch = 0.0;            ///< m; 0: belt width over valves
+  double dead = 0.0;             ///< share of valves that do not open
+  std::vector<int> dead_valves;  ///< and these, from 0
+  double delay_spread = 0.0;     ///< s, standard deviation from valve to valve
+  double vessel = 0.0;           ///< m3, that all valves draw from; 0: the supply never falls
+  double line_diameter = 0.0;    ///< m, of the line that feeds it
+};
+
 struct Case {
   std::string path;                ///< of the file it came from; relative names inside are relative to it
   std::vector<std::string> bases;  ///< paths of the files that it extends
@@ -450,6 +529,12 @@ struct Case {
   StudySpec study;
   MapSpec map;
   CampaignSpec campaign;  ///< such a file has nothing else
+  SorterSpec sorter;
+  FeedSpec feed;
+  std::vector<ParticleClassSpec> classes;
+  CameraSpec camera;
+  ControllerSpec controller;
+  ManifoldSpec manifold;
 };
 
 inline bool is_incompressible(const Case& c) { return c.flow.solver == FlowSolver::incompressible; }

@@ -39,5 +39,6 @@ void sense_idle(const Case&, Findings&);
 void sense_expectations(const Case&, Findings&);
 void sense_map(const Case&, Findings&);
 void sense_campaign(const Case&, Findings&);
+void sense_machine(const Case&, Findings&);
 
 }  // namespace ejecta

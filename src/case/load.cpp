@@ -146,6 +146,11 @@ void for_each_file(C& c, const Visit& visit) {
   for (auto& m : c.measured) visit(m.file);
   visit(c.map.measured);
   for (auto& part : c.campaign.parts) visit(part.file);
+  visit(c.feed.file);
+  for (auto& one : c.classes) {
+    visit(one.file);
+    visit(one.sieves);
+  }
 }
 
 }  // namespace

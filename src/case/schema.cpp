@@ -80,7 +80,15 @@ std::vector<Section> sections(Case& c) {
                  &c.map.enabled),
            table("campaign", "A programme of runs with one report: `ejecta campaign`", c.campaign,
                  &c.campaign.enabled),
-           list("campaign.part", "One command of the programme", c.campaign.parts)})
+           list("campaign.part", "One command of the programme", c.campaign.parts),
+           table("sorter", "A whole sorter, feed to products: `ejecta sort`", c.sorter, &c.sorter.enabled),
+           table("sorter.feed", "How particles lie on the belt", c.feed, &c.sorter.enabled),
+           list("sorter.class", "Particles of one kind", c.classes),
+           table("sorter.camera", "What looks at the belt, and what it makes of it", c.camera,
+                 &c.sorter.enabled),
+           table("sorter.controller", "When and how long valves are told to open", c.controller,
+                 &c.sorter.enabled),
+           table("sorter.manifold", "The row of valves across the belt", c.manifold, &c.sorter.enabled)})
     all.push_back(std::move(s));
   return all;
 }

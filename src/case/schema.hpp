@@ -50,5 +50,11 @@ std::vector<Key> keys(VarySpec&);
 std::vector<Key> keys(MapSpec&);
 std::vector<Key> keys(CampaignSpec&);
 std::vector<Key> keys(CampaignPartSpec&);
+std::vector<Key> keys(SorterSpec&);
+std::vector<Key> keys(FeedSpec&);
+std::vector<Key> keys(ParticleClassSpec&);
+std::vector<Key> keys(CameraSpec&);
+std::vector<Key> keys(ControllerSpec&);
+std::vector<Key> keys(ManifoldSpec&);
 
 }  // namespace ejecta

@@ -13,7 +13,7 @@ struct Part {
   std::vector<std::string> sections;  ///< what it reads
 };
 
-const std::array<Part, 15> parts{{
+const std::array<Part, 16> parts{{
     {sense_run, {"run", "environment", "fluid", "flow", "body", "splitter"}},
     {sense_grid, {"grid"}},
     {sense_boundaries, {"boundary", "environment", "flow", "grid"}},
@@ -30,6 +30,7 @@ const std::array<Part, 15> parts{{
     {sense_records, {"grid", "flow", "probe", "line", "slice"}},
     {sense_map,
      {"map", "launch", "splitter", "body", "grid", "boundary", "jet", "valve", "environment", "flow"}},
+    {sense_machine, {"sorter", "launch", "splitter", "valve", "jet", "boundary", "grid", "fluid"}},
     {sense_idle, {"boundary", "valve", "contact", "body", "wall", "splitter"}},
 }};
 

@@ -21,7 +21,7 @@ void sense_run(const Case& c, Findings& found) {
   if (!has_flow(c) && c.bodies.empty())
     found.error("flow.solver", "neither a flow nor a body: there is nothing to compute",
                 "a flow solver, or at least one [[body]]", "solver = \"incompressible\"");
-  if (c.run.until != RunUntil::time && c.bodies.empty())
+  if (c.run.until != RunUntil::time && c.bodies.empty() && !c.sorter.enabled)
     found.error("run.until", fmt::format("until \"{}\" needs a body", word(c.run.until)),
                 "\"time\", or at least one [[body]]", "until = \"time\"");
   if (c.run.until == RunUntil::verdict && !c.splitter.enabled)

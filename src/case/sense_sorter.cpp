@@ -126,9 +126,9 @@ void sense_sorter(const Case& c, Findings& found) {
   if (c.splitter.edge && (*c.splitter.edge)[0] <= 0.0)
     found.error("splitter.edge", "the edge of the plate is not behind the jet: bodies fly towards +x",
                 "x, from jet.nozzle, more than 0; then z", "edge = [\"250 mm\", \"60 mm\"]");
-  if (c.splitter.enabled && c.bodies.empty())
+  if (c.splitter.enabled && c.bodies.empty() && !c.sorter.enabled)
     found.warning("splitter", "a dividing plate without a body to divide");
-  if (c.launch.enabled &&
+  if (c.launch.enabled && !c.sorter.enabled &&
       std::none_of(c.bodies.begin(), c.bodies.end(), [](const BodySpec& b) { return b.on_belt; }))
     found.warning("launch", "no body comes from the belt", "on_belt = true in a [[body]]");
 }

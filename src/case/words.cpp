@@ -132,4 +132,39 @@ const std::vector<Word>& words(MapLying) {
   return list;
 }
 
+const std::vector<Word>& words(Presentation) {
+  static const std::vector<Word> list{
+      {"independent", "each particle anywhere, whatever lies there (a Poisson process): the worst case"},
+      {"monolayer", "anywhere but not on each other"},
+      {"file", "where the CSV `file` says, as a camera logs it"}};
+  return list;
+}
+
+const std::vector<Word>& words(ParticleForm) {
+  static const std::vector<Word> list{
+      {"box", "cuboid; with flatness 0.5 the paper's flat particle"},
+      {"rock", "random convex rocks"},
+      {"sphere", "ball"},
+      {"cluster", "the paper's spheres inside a box: 27, or 9 where flatness is 0.5 or less"},
+      {"mesh", "closed surface from the STL `file`, scaled to its size"}};
+  return list;
+}
+
+const std::vector<Word>& words(SizeLaw) {
+  static const std::vector<Word> list{
+      {"one", "all of one `size`"},
+      {"uniform", "by number evenly from `size` to `size_to`"},
+      {"lognormal", "by number; median `size`, standard deviation of the logarithm `spread`"},
+      {"rosin-rammler", "by mass; 63 % finer than `size`, exponent `spread` (Rosin & Rammler 1933)"},
+      {"sieves", "by mass, from the CSV file `sieves`: size and share finer than it"}};
+  return list;
+}
+
+const std::vector<Word>& words(WindowRule) {
+  static const std::vector<Word> list{
+      {"fixed", "every command lasts `duration`, as the paper's machine"},
+      {"by-size", "as long as the object needs to pass, and the errors of its time beside it"}};
+  return list;
+}
+
 }  // namespace ejecta

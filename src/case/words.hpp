@@ -26,6 +26,10 @@ const std::vector<Word>& words(RunUntil);
 const std::vector<Word>& words(StudyDesign);
 const std::vector<Word>& words(MapLying);
 const std::vector<Word>& words(CampaignKind);
+const std::vector<Word>& words(Presentation);
+const std::vector<Word>& words(ParticleForm);
+const std::vector<Word>& words(SizeLaw);
+const std::vector<Word>& words(WindowRule);
 
 /// The word of an enumerator, e.g. "k-omega-sst".
 template <class E>

@@ -21,6 +21,7 @@
 #include "shape/stl.hpp"
 #include "simulation/prospect.hpp"
 #include "simulation/scene.hpp"
+#include "sorter/feed.hpp"
 
 namespace ejecta {
 namespace {
@@ -433,7 +434,13 @@ std::vector<Problem> check_bodies(const Case& original, std::optional<Scene>* se
 Case load_checked(const std::string& path, const std::vector<std::string>& overrides,
                   std::vector<Problem>* warnings, std::optional<Scene>* scene) {
   return load_case(path, overrides, warnings, [scene](const Case& c) {
-    return c.campaign.enabled ? std::vector<Problem>{} : check_bodies(c, scene);  // which has none
+    if (c.campaign.enabled) return std::vector<Problem>{};  // it has no bodies
+    std::vector<Problem> found = check_bodies(c, scene);
+    if (c.sorter.enabled) {
+      const std::vector<Problem> more = check_feed(c);
+      found.insert(found.end(), more.begin(), more.end());
+    }
+    return found;
   });
 }
 

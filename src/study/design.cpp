@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "study/random.hpp"
+#include "base/random.hpp"
 
 namespace ejecta {
 namespace {

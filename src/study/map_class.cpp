@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "study/random.hpp"
+#include "base/random.hpp"
 
 namespace ejecta {
 namespace {

@@ -11,7 +11,7 @@
 
 #include "base/error.hpp"
 #include "base/parallel.hpp"
-#include "study/random.hpp"
+#include "base/random.hpp"
 
 namespace ejecta {
 namespace {

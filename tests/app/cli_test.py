@@ -13,7 +13,7 @@ import unittest
 import zipfile
 
 EJECTA = os.path.abspath(sys.argv.pop())
-COMMANDS = "run check plan explain new jet validate bench report cache study map table paraview serve".split()
+COMMANDS = "run check plan explain new jet validate bench report cache study map sort table paraview serve".split()
 BOUNCE = """[run]
 end_time = "1 ms"
 [flow]

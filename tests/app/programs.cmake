@@ -36,6 +36,9 @@ add_test(NAME app.cold_store COMMAND ${Python3_EXECUTABLE} ${CMAKE_CURRENT_LIST_
 set_tests_properties(app.cold_store PROPERTIES LABELS fast TIMEOUT 300)
 add_test(NAME app.hundred_runs COMMAND test_simulation --gtest_filter=Run.SideBySideInOneProcess*)
 set_tests_properties(app.hundred_runs PROPERTIES LABELS slow TIMEOUT 3600 ENVIRONMENT EJECTA_SIDE_BY_SIDE=100)
+# A whole sorter: threads, kills, books.
+add_test(NAME app.sort COMMAND ${Python3_EXECUTABLE} ${CMAKE_CURRENT_LIST_DIR}/sort_test.py $<TARGET_FILE:ejecta>)
+set_tests_properties(app.sort PROPERTIES LABELS fast TIMEOUT 600)
 # A real SLURM of one node, where Debian's slurm-wlm is installed.
 add_test(NAME app.slurm COMMAND ${Python3_EXECUTABLE} ${CMAKE_CURRENT_LIST_DIR}/slurm_test.py $<TARGET_FILE:ejecta>)
 set_tests_properties(app.slurm PROPERTIES LABELS slow SKIP_RETURN_CODE 77 TIMEOUT 600 RUN_SERIAL ON)

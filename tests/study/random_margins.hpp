@@ -4,8 +4,8 @@
 #include <functional>
 #include <numbers>
 
+#include "base/random.hpp"
 #include "study/margin_process.hpp"
-#include "study/random.hpp"
 
 namespace ejecta {
 

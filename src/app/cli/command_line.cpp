@@ -94,7 +94,7 @@ int run_command_line(int argc, const char* const* argv) {
   Action action;
   for (auto* add :
        {add_run, add_check, add_plan, add_explain, add_new, add_jet, add_validate, add_bench, add_report,
-        add_cache, add_study, add_map, add_campaign, add_table, add_serve, add_paraview})
+        add_cache, add_study, add_map, add_campaign, add_table, add_serve, add_paraview, add_sort})
     add(app, action);
   for (CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
     command->group("Commands");

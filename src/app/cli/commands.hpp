@@ -26,6 +26,7 @@ void add_campaign(CLI::App& app, Action& action);
 void add_serve(CLI::App& app, Action& action);
 void add_table(CLI::App& app, Action& action);
 void add_paraview(CLI::App& app, Action& action);
+void add_sort(CLI::App& app, Action& action);
 
 /// Tells the user what is wrong with the input.
 void print_input_error(const InputError& e);

@@ -1,0 +1,143 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <filesystem>
+
+#include "base/units.hpp"
+#include "case/extent.hpp"
+#include "case/findings.hpp"
+#include "case/load.hpp"
+
+/// [sorter]: whether it is a whole machine, and one that can work. What needs shapes and sizes is checked by
+/// sorter/feed.cpp.
+namespace ejecta {
+namespace {
+
+bool has_machine(const Case& c, Findings& found) {
+  const std::size_t before = found.list.size();
+  if (!c.launch.enabled)
+    found.error("sorter", "a sorter needs the flight from the belt to the jets, but there is no [launch]",
+                "[launch]", "[launch] belt_speed = \"3 m/s\"");
+  if (!c.splitter.enabled)
+    found.error("sorter", "a sorter needs a plate that parts its products, but there is no [splitter]",
+                "[splitter]", "[splitter] distance = \"250 mm\", height = \"18 mm\"");
+  if (!jet_face(c) || !grid_box(c))
+    found.error("sorter", "a sorter needs the jet of a valve, but no face of a box is of type \"jet\"",
+                "the box of one ejection: [grid], [boundary.z_min] type = \"jet\", [valve], [jet]",
+                "extends = \"../paper/setup/box.toml\"");
+  else if (!is_incompressible(c))
+    found.error("flow.solver", "the jet of a sorter is that of an incompressible box", "\"incompressible\"",
+                "solver = \"incompressible\"");
+  if (!c.jet.more_nozzles.empty())
+    found.error("jet.more_nozzles", "the valves of a sorter are those of its manifold", "[sorter.manifold]",
+                "[sorter.manifold] valves = 128");
+  if (!(c.sorter.throughput > 0.0))
+    found.error("sorter.throughput", "missing: how much the belt brings", "a mass flow, more than 0",
+                "throughput = \"10 t/h\"");
+  return found.list.size() == before;
+}
+
+void check_sizes(const Case& c, std::size_t n, Findings& found) {
+  const ParticleClassSpec& k = c.classes[n];
+  const std::string at = fmt::format("sorter.class.{}.", n);
+  const bool by_sieves = k.sizes == SizeLaw::sieves;
+  if (!by_sieves && !(k.size > 0.0))
+    found.error(at + "size", fmt::format("\"{}\" has no size", k.name), "a length, more than 0",
+                "size = \"10 mm\"");
+  const double largest = std::max(k.size, k.size_to) / k.elongation;
+  if (largest >= c.sorter.belt_width)
+    found.error(at + "size",
+                fmt::format("particles of {:.4g} mm are wider than the belt of {:.4g} mm", 1e3 * largest,
+                            1e3 * c.sorter.belt_width),
+                "a size below sorter.belt_width",
+                fmt::format("size = \"{:.3g} mm\"", 100.0 * c.sorter.belt_width));
+  if (k.sizes == SizeLaw::uniform && !(k.size_to > k.size))
+    found.error(at + "size_to", "the sizes have no upper end above `size`", "a length, more than `size`",
+                "size_to = \"20 mm\"");
+  if ((k.sizes == SizeLaw::lognormal || k.sizes == SizeLaw::rosin_rammler) && !(k.spread > 0.0))
+    found.error(at + "spread", fmt::format("sizes that are \"{}\" need it", word(k.sizes)),
+                "a number, more than 0", "spread = 0.2");
+  const auto need_file = [&](const char* key, const std::string& file, const char* example) {
+    std::error_code none;
+    if (file.empty())
+      found.error(at + key, "missing: the file", "a file, relative to the folder of the case", example);
+    else if (!std::filesystem::is_regular_file(beside_case(c, file), none))
+      found.error(at + key, fmt::format("there is no file \"{}\"", beside_case(c, file)),
+                  "a file, relative to the folder of the case", example);
+  };
+  if (by_sieves) need_file("sieves", k.sieves, "sieves = \"sieves.csv\"");
+  if (k.form == ParticleForm::mesh) need_file("file", k.file, "file = \"rock.stl\"");
+}
+
+void check_classes(const Case& c, Findings& found) {
+  if (c.classes.empty()) {
+    found.error("sorter", "there is nothing to sort: no [[sorter.class]]", "classes whose shares add up to 1",
+                "[[sorter.class]] name = \"ore\", share = 1.0, eject = true, size = \"10 mm\"");
+    return;
+  }
+  double sum = 0.0;
+  bool any = false;
+  for (std::size_t n = 0; n < c.classes.size(); ++n) {
+    sum += c.classes[n].share;
+    any = any || (c.classes[n].eject && c.classes[n].share > 0.0);
+    check_sizes(c, n, found);
+  }
+  const std::size_t last = c.classes.size() - 1;
+  if (std::abs(sum - 1.0) > 1e-6) {
+    const double rest = 1.0 - (sum - c.classes[last].share);
+    found.error(fmt::format("sorter.class.{}.share", last),
+                fmt::format("the shares of all classes add up to {:.6g}, not to 1", sum),
+                "shares that add up to 1", rest > 0.0 ? fmt::format("share = {:.6g}", rest) : "share = 0.5");
+  }
+  if (!any)
+    found.error("sorter.class.0.eject", "no class is to be ejected", "true for at least one of them",
+                "eject = true");
+}
+
+void check_devices(const Case& c, Findings& found) {
+  // All of an object must have passed the camera, and be thought about, before its first command.
+  const double v = c.launch.belt_speed, there = c.camera.distance / v;
+  double longest = 0.0;
+  for (const ParticleClassSpec& k : c.classes)
+    longest = std::max(longest, std::max(k.size, k.size_to) / k.elongation);
+  const ControllerSpec& k = c.controller;
+  const double needs = k.lead + c.camera.computing_time + longest / v +
+                       (k.window == WindowRule::by_size ? k.quantile * k.time_error : 0.0);
+  if (needs > there)
+    found.error(
+        "sorter.camera.distance",
+        fmt::format(
+            "the window would open before the camera has seen the particle: from the camera to the jets it "
+            "takes {}, the commands are needed {} before",
+            format_quantity(there, Dimension::time), format_quantity(needs, Dimension::time)),
+        fmt::format("at least {:.3g} mm, or a shorter lead or computing time", 1e3 * needs * v),
+        fmt::format("distance = \"{:.0f} mm\"", 1e3 * needs * v + 20.0));
+  for (const int valve : c.manifold.dead_valves)
+    if (valve >= c.manifold.valves)
+      found.error("sorter.manifold.dead_valves",
+                  fmt::format("there is no valve {}: they are 0 to {}", valve, c.manifold.valves - 1),
+                  "numbers of valves, from 0", "dead_valves = [12, 13]");
+  if (c.manifold.vessel > 0.0 && !(c.manifold.line_diameter > 0.0))
+    found.error("sorter.manifold.line_diameter", "the vessel is fed through nothing", "a length, more than 0",
+                "line_diameter = \"10 mm\"");
+  if (c.feed.presentation == Presentation::file) {
+    std::error_code none;
+    if (c.feed.file.empty() || !std::filesystem::is_regular_file(beside_case(c, c.feed.file), none))
+      found.error("sorter.feed.file",
+                  c.feed.file.empty() ? "missing: the file with the places"
+                                      : fmt::format("there is no file \"{}\"", beside_case(c, c.feed.file)),
+                  "a CSV file, relative to the folder of the case", "file = \"log.csv\"");
+  }
+}
+
+}  // namespace
+
+void sense_machine(const Case& c, Findings& found) {
+  if (!c.sorter.enabled) return;
+  if (!has_machine(c, found)) return;
+  const std::size_t before = found.list.size();
+  check_classes(c, found);
+  if (found.list.size() == before) check_devices(c, found);
+}
+
+}  // namespace ejecta

@@ -1,0 +1,261 @@
+#include "sorter/particle_class.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <numbers>
+
+#include "base/error.hpp"
+#include "base/random.hpp"
+#include "case/csv_table.hpp"
+#include "shape/polytope.hpp"
+#include "shape/stl.hpp"
+#include "sorter/plan_view.hpp"
+
+namespace ejecta {
+namespace {
+
+constexpr int kRocks = 32;          ///< different shapes of a class of rocks
+constexpr int kRockPoints = 24;     ///< of which each is the hull
+constexpr int kSizeSamples = 4096;  ///< for means over sizes
+/// Longest edge of a piece of surface: beside the smallest dimension, and beside the jet, whose velocity
+/// falls to a half within 6.5 mm where bodies cross it, m.
+constexpr double kPieceOverSize = 0.71, kPiece = 7.1e-3;
+
+/// Divides a triangle until its edges are short; curved shapes come as small triangles already.
+void add_pieces(const Vec3& a, const Vec3& b, const Vec3& c, double edge,
+                std::vector<Prototype::Piece>& out) {
+  const double ab = (b - a).squaredNorm(), bc = (c - b).squaredNorm(), ca = (a - c).squaredNorm();
+  const double longest = std::max({ab, bc, ca});
+  if (longest <= edge * edge) {
+    out.push_back({(a + b + c) / 3.0, 0.5 * (b - a).cross(c - a)});
+    return;
+  }
+  if (longest == ab) {
+    const Vec3 m = 0.5 * (a + b);
+    add_pieces(a, m, c, edge, out);
+    add_pieces(m, b, c, edge, out);
+  } else if (longest == bc) {
+    const Vec3 m = 0.5 * (b + c);
+    add_pieces(a, b, m, edge, out);
+    add_pieces(a, m, c, edge, out);
+  } else {
+    const Vec3 m = 0.5 * (c + a);
+    add_pieces(a, b, m, edge, out);
+    add_pieces(m, b, c, edge, out);
+  }
+}
+
+/// As it comes to rest: its smallest principal dimension stands up.
+Quat lying(const Shape& shape) {
+  double least = 1e300;
+  Vec3 up = Vec3::UnitZ();
+  for (const Vec3& axis : {Vec3(0, 0, 1), Vec3(0, 1, 0), Vec3(1, 0, 0)}) {
+    const double height = axis.dot(shape.support(axis)) - axis.dot(shape.support(-axis));
+    if (height < (1.0 - 1e-9) * least) {
+      least = height;
+      up = axis;
+    }
+  }
+  return Quat::FromTwoVectors(up, Vec3::UnitZ());
+}
+
+Prototype make_prototype(Shape shape, double size, bool sharp, double tolerance) {
+  const MassProperties mass = shape.mass_properties();
+  Prototype p{.shape = shape,
+              .size = size,
+              .resting = lying(shape),
+              .sharp = sharp,
+              .volume = mass.volume,
+              .inertia = mass.inertia.diagonal()};
+  const TriangleMesh mesh = shape.surface(tolerance);
+  double low = 0.0, high = 0.0;
+  std::vector<Vec3> plan;
+  for (const Vec3& v : mesh.vertices) {
+    const Vec3 at = p.resting * v;
+    low = std::min(low, at.z());
+    high = std::max(high, at.z());
+    plan.push_back({at.x(), at.y(), 0.0});
+  }
+  p.height = high - low;
+  p.outline = convex_outline(std::move(plan));
+  p.area = area_of_outline(p.outline);
+  p.perimeter = perimeter_of_outline(p.outline);
+  const double edge = std::min(kPiece, kPieceOverSize * shape.smallest_feature());
+  for (const auto& t : mesh.triangles)
+    add_pieces(mesh.vertices[static_cast<std::size_t>(t[0])], mesh.vertices[static_cast<std::size_t>(t[1])],
+               mesh.vertices[static_cast<std::size_t>(t[2])], edge, p.surface);
+  return p;
+}
+
+/// The hull of points at random on an ellipsoid with these semi-axes.
+Shape random_rock(const Vec3& half, const CounterRandom& random) {
+  std::vector<Vec3> points;
+  for (std::uint64_t n = 0; n < kRockPoints; ++n) {
+    const auto xy = random.normals(2 * n), z = random.normals(2 * n + 1);
+    points.push_back(Vec3(xy[0], xy[1], z[0]).normalized().cwiseProduct(half));
+  }
+  return make_polyhedron(points);
+}
+
+double middle_dimension(const Shape& shape) {
+  std::array<double, 3> d{};
+  for (int a = 0; a < 3; ++a)
+    d[static_cast<std::size_t>(a)] = shape.support(Vec3::Unit(a))[a] - shape.support(-Vec3::Unit(a))[a];
+  std::sort(d.begin(), d.end());
+  return d[1];
+}
+
+std::vector<Prototype> make_prototypes(const ParticleClassSpec& s, double size, const std::string& directory,
+                                       std::int64_t seed) {
+  const Vec3 dimensions(size / s.elongation, size, size * s.flatness);
+  std::vector<Prototype> list;
+  switch (s.form) {
+    case ParticleForm::box:
+      list.push_back(make_prototype(make_box(dimensions), size, true, 0.0));
+      break;
+    case ParticleForm::sphere:
+      list.push_back(make_prototype(make_sphere(size), size, false, 0.05 * size));
+      break;
+    case ParticleForm::cluster: {
+      const bool flat = s.flatness <= 0.5;
+      const Shape spheres = make_cluster(dimensions, {3, 3, flat ? 1 : 3}, 0.5 * size);
+      Prototype p = make_prototype(spheres, size, false, 0.05 * size);
+      const MassProperties box =
+          make_box(dimensions).mass_properties();  // as the paper's: that of the true box
+      p.volume = box.volume;
+      p.inertia = box.inertia.diagonal();
+      list.push_back(std::move(p));
+      break;
+    }
+    case ParticleForm::rock:
+      for (std::uint64_t n = 0; n < kRocks; ++n) {
+        const Shape rock = random_rock(0.5 * dimensions, CounterRandom(static_cast<std::uint64_t>(seed), n));
+        list.push_back(make_prototype(rock, middle_dimension(rock), true, 0.0));
+      }
+      break;
+    case ParticleForm::mesh: {
+      const std::string path = (std::filesystem::path(directory) / s.file).string();
+      const double scale = size / middle_dimension(make_mesh(read_stl(path, 1.0), s.file));
+      list.push_back(make_prototype(make_mesh(read_stl(path, scale), s.file), size, true, 0.0));
+      list.back().file_scale = scale;
+    }
+  }
+  return list;
+}
+
+/// The quantile of the normal distribution (Acklam's rational approximation, relative error 1.2e-9).
+double normal_quantile(double p) {
+  constexpr double a[] = {-3.969683028665376e+01, 2.209460984245205e+02,  -2.759285104469687e+02,
+                          1.383577518672690e+02,  -3.066479806614716e+01, 2.506628277459239e+00};
+  constexpr double b[] = {-5.447609879822406e+01, 1.615858368580409e+02, -1.556989798598866e+02,
+                          6.680131188771972e+01, -1.328068155288572e+01};
+  constexpr double c[] = {-7.784894002430293e-03, -3.223964580411365e-01, -2.400758277161838e+00,
+                          -2.549732539343734e+00, 4.374664141464968e+00,  2.938163982698783e+00};
+  constexpr double d[] = {7.784695709041462e-03, 3.224671290700398e-01, 2.445134137142996e+00,
+                          3.754408661907416e+00};
+  if (p < 0.02425) {
+    const double q = std::sqrt(-2.0 * std::log(p));
+    return (((((c[0] * q + c[1]) * q + c[2]) * q + c[3]) * q + c[4]) * q + c[5]) /
+           ((((d[0] * q + d[1]) * q + d[2]) * q + d[3]) * q + 1.0);
+  }
+  if (p > 1.0 - 0.02425) return -normal_quantile(1.0 - p);
+  const double q = p - 0.5, r = q * q;
+  return (((((a[0] * r + a[1]) * r + a[2]) * r + a[3]) * r + a[4]) * r + a[5]) * q /
+         (((((b[0] * r + b[1]) * r + b[2]) * r + b[3]) * r + b[4]) * r + 1.0);
+}
+
+double interpolate(const std::vector<double>& x, const std::vector<double>& y, double at) {
+  const auto above = std::upper_bound(x.begin(), x.end(), at);
+  if (above == x.begin()) return y.front();
+  if (above == x.end()) return y.back();
+  const auto n = static_cast<std::size_t>(above - x.begin());
+  return y[n - 1] + (at - x[n - 1]) / (x[n] - x[n - 1]) * (y[n] - y[n - 1]);
+}
+
+}  // namespace
+
+ParticleClass::ParticleClass(const ParticleClassSpec& spec, const std::string& directory, std::int64_t seed)
+    : spec_(spec) {
+  if (spec.sizes == SizeLaw::sieves || spec.sizes == SizeLaw::rosin_rammler) {
+    std::vector<double> size, finer;  // by mass
+    if (spec.sizes == SizeLaw::sieves) {
+      const std::string file = (std::filesystem::path(directory) / spec.sieves).string();
+      std::vector<Problem> problems;
+      const CsvTable table = read_csv(file,
+                                      {.kind = "a sieve analysis",
+                                       .columns = {{"size", Dimension::length}, {"finer", Dimension::none}},
+                                       .example_head = "size [mm], finer",
+                                       .example_row = "10, 0"},
+                                      problems);
+      if (!problems.empty()) throw InputError(render(problems));
+      for (const auto& row : table.rows) {
+        size.push_back(row[0]);
+        finer.push_back(row[1]);
+      }
+      const bool sound = size.size() >= 2 && finer.front() == 0.0 && finer.back() == 1.0 &&
+                         size.front() > 0.0 && std::is_sorted(finer.begin(), finer.end());
+      if (!sound)
+        throw InputError(
+            fmt::format("{}: the share that is finer must ascend from 0 to 1, at sizes above 0", file));
+    } else {
+      // From 1 % to 99 %: the law itself has no smallest particle, and a feed has.
+      for (int n = 0; n <= 200; ++n) {
+        const double f = 0.01 + 0.98 * n / 200.0;
+        size.push_back(spec.size * std::pow(-std::log(1.0 - f), 1.0 / spec.spread));
+        finer.push_back(n / 200.0);
+      }
+    }
+    sizes_.push_back(size.front());
+    finer_.push_back(0.0);
+    constexpr int kSteps = 16;  // between sieves the mass is spread evenly over the size
+    for (std::size_t n = 1; n < size.size(); ++n)
+      for (int k = 0; k < kSteps; ++k) {
+        const double middle = size[n - 1] + (k + 0.5) / kSteps * (size[n] - size[n - 1]);
+        sizes_.push_back(size[n - 1] + (k + 1.0) / kSteps * (size[n] - size[n - 1]));
+        finer_.push_back(finer_.back() + (finer[n] - finer[n - 1]) / kSteps / std::pow(middle, 3));
+      }
+    const double all = finer_.back();
+    for (double& f : finer_) f /= all;
+  }
+  const double typical = size_at(0.5);
+  prototypes_ = make_prototypes(spec, typical, directory, seed);
+  double cube = 0.0, square = 0.0, first = 0.0;
+  for (int n = 0; n < kSizeSamples; ++n) {
+    const double s = size_at((n + 0.5) / kSizeSamples);
+    first += s / kSizeSamples;
+    square += s * s / kSizeSamples;
+    cube += s * s * s / kSizeSamples;
+  }
+  for (const Prototype& p : prototypes_) {
+    const double each = 1.0 / static_cast<double>(prototypes_.size());
+    mean_mass_ += each * spec.density * p.volume * cube / std::pow(p.size, 3);
+    mean_area_ += each * p.area * square / (p.size * p.size);
+    mean_perimeter_ += each * p.perimeter * first / p.size;
+  }
+}
+
+double ParticleClass::size_at(double u) const {
+  switch (spec_.sizes) {
+    case SizeLaw::one:
+      return spec_.size;
+    case SizeLaw::uniform:
+      return spec_.size + u * (spec_.size_to - spec_.size);
+    case SizeLaw::lognormal:
+      return spec_.size * std::exp(spec_.spread * normal_quantile(u));
+    case SizeLaw::rosin_rammler:
+    case SizeLaw::sieves:
+      break;
+  }
+  return interpolate(finer_, sizes_, u);
+}
+
+const Prototype& ParticleClass::prototype(double u) const {
+  const auto n = static_cast<std::size_t>(u * static_cast<double>(prototypes_.size()));
+  return prototypes_[std::min(n, prototypes_.size() - 1)];
+}
+
+}  // namespace ejecta

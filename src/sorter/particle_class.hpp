@@ -1,0 +1,36 @@
+#pragma once
+#include <memory>
+#include <vector>
+
+#include "case/case.hpp"
+#include "sorter/feed_particle.hpp"
+
+namespace ejecta {
+
+/// A [[sorter.class]] made ready to draw particles from.
+class ParticleClass {
+ public:
+  /// `directory`: where relative file names start. Throws InputError for files it cannot use.
+  ParticleClass(const ParticleClassSpec& spec, const std::string& directory, std::int64_t seed);
+
+  /// Of the share `u` (0 to 1) of the particles, by number, that are smaller; m.
+  double size_at(double u) const;
+  /// One of the prototypes, by a number 0 to 1.
+  const Prototype& prototype(double u) const;
+  double mass_of(const Prototype& p, double scale) const {
+    return spec_.density * p.volume * scale * scale * scale;
+  }
+
+  double mean_mass() const { return mean_mass_; }            ///< kg, of a particle
+  double mean_area() const { return mean_area_; }            ///< m2, of outlines from above
+  double mean_perimeter() const { return mean_perimeter_; }  ///< m
+  const ParticleClassSpec& spec() const { return spec_; }
+
+ private:
+  ParticleClassSpec spec_;
+  std::vector<Prototype> prototypes_;
+  std::vector<double> finer_, sizes_;  ///< by number, ascending: where no formula gives it
+  double mean_mass_ = 0.0, mean_area_ = 0.0, mean_perimeter_ = 0.0;
+};
+
+}  // namespace ejecta

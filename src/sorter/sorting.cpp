@@ -1,0 +1,222 @@
+#include "sorter/sorting.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "sorter/alone.hpp"
+
+namespace ejecta {
+namespace {
+
+/// s, from a particle's passing: what a valve does earlier or later it does not feel.
+constexpr double kLongest = 0.05;
+
+double outer_radius(const FeedParticle& p) { return p.scale * p.prototype->shape.bounding_radius(); }
+
+}  // namespace
+
+struct Sorter::Scene {
+  std::vector<FeedParticle> particles;
+  std::vector<SeenObject> objects;
+  std::vector<int> object_of;  // of a particle; -1: none
+  std::vector<ValveCommand> commands;
+  std::vector<std::vector<ValvePulse>> pulses;
+  std::vector<std::vector<ValvePulse>> pulses_with_dead;  // as if no valve were dead; empty: none is
+};
+
+Ejection fast_ejection(const Case& c, const JetSource& source) {
+  const AirCoefficients coefficients;
+  const auto field = std::make_shared<const JetField>(c, source, coefficients.widening);
+  const auto flight = std::make_shared<const FastFlight>(c, *field, coefficients);
+  return {.fly = [field, flight](const FeedParticle& p, double at, double y, std::span<const Blow> blows,
+                                 bool keep_path) { return flight->fly(p, at, y, blows, keep_path); },
+          .reach = flight->reach(0.0)};
+}
+
+Sorter::Sorter(const Case& c, Ejection ejection)
+    : case_(c),
+      feed_(c),
+      camera_(c),
+      controller_(c),
+      manifold_(c),
+      ejection_(std::move(ejection)),
+      vessel_(c),
+      air_use_(c) {}
+
+FlightEnd Sorter::fly(const FeedParticle& p, const std::vector<std::vector<ValvePulse>>& pulses, bool as_seen,
+                      bool keep_path) const {
+  const double at = p.x / case_.launch.belt_speed + (as_seen ? 0.0 : p.late),
+               y = p.y + (as_seen ? 0.0 : p.beside);
+  const double reach = outer_radius(p) + ejection_.reach, pitch = valve_pitch(case_);
+  const int count = case_.manifold.valves;
+  const double middle = y / pitch + 0.5 * count - 0.5;
+  const int first = std::max(0, static_cast<int>(std::ceil(middle - reach / pitch))),
+            last = std::min(count - 1, static_cast<int>(std::floor(middle + reach / pitch)));
+  std::vector<Blow> blows;
+  for (int v = first; v <= last; ++v) {
+    const double delay = manifold_.delay(v);
+    for (const ValvePulse& pulse : pulses[static_cast<std::size_t>(v)]) {
+      if (pulse.from + delay > at + kLongest || pulse.to + delay < at - kLongest) continue;
+      Blow blow{valve_place(case_, v), pulse};
+      blow.pulse.from += delay;
+      blow.pulse.to += delay;
+      blows.push_back(blow);
+    }
+  }
+  return ejection_.fly(p, at, y, blows, keep_path);
+}
+
+Fate Sorter::fate_of(const Scene& s, std::size_t n, FlightEnd* end) const {
+  const FeedParticle& p = s.particles[n];
+  const bool wanted = case_.classes[static_cast<std::size_t>(p.kind)].eject;
+  const FlightEnd flight = fly(p, s.pulses, false, end != nullptr);
+  if (end) *end = flight;
+  const SeenObject* object =
+      s.object_of[n] < 0 ? nullptr : &s.objects[static_cast<std::size_t>(s.object_of[n])];
+  const bool single = object && object->members.size() == 1, shot_at = object && object->eject;
+  if (!wanted) {
+    if (!flight.ejected()) return Fate::kept;
+    if (!shot_at) return Fate::taken_in_window;
+    return single ? Fate::taken_misread : Fate::taken_agglomerated;
+  }
+  if (flight.ejected()) return Fate::ejected;
+  if (!object) return Fate::missed_not_seen;
+  if (!shot_at) return single ? Fate::missed_misread : Fate::missed_agglomerated;
+  if (!s.pulses_with_dead.empty() && fly(p, s.pulses_with_dead, false, false).ejected())
+    return Fate::missed_dead_valve;
+  if ((p.late != 0.0 || p.beside != 0.0) && fly(p, s.pulses, true, false).ejected()) return Fate::missed_late;
+  if (!single) return Fate::missed_agglomerated;
+  if (flight.clearance > -0.5 * p.scale * p.prototype->height) return Fate::missed_struck_plate;
+  return Fate::missed_too_weak;
+}
+
+Sorter::Scene Sorter::look(std::int64_t first, std::int64_t last) const {
+  Scene s;
+  s.particles = feed_.cells(first - 1, last + 1);
+  s.objects = camera_.look(s.particles);
+  s.object_of.assign(s.particles.size(), -1);
+  for (std::size_t o = 0; o < s.objects.size(); ++o)
+    for (const int member : s.objects[o].members)
+      s.object_of[static_cast<std::size_t>(member)] = static_cast<int>(o);
+  s.commands = controller_.commands(s.objects);
+  return s;
+}
+
+Shot Sorter::shot(const Scene& s, std::span<const ValveCommand> commands, std::size_t which) const {
+  const ValveCommand& c = commands[which];
+  const double middle = 0.5 * (valve_place(case_, c.first) + valve_place(case_, c.last)),
+               v = case_.launch.belt_speed;
+  Shot shot;
+  shot.lasts = c.to - c.from;
+  std::vector<Blow> blows;
+  for (int valve = c.first; valve <= c.last; ++valve) {
+    if (manifold_.is_dead(valve)) continue;
+    shot.valves.push_back(valve_place(case_, valve) - middle);
+    blows.push_back({valve_place(case_, valve), {.from = c.from, .to = c.to}});
+  }
+  // How far from the middle of a command a particle is, in its own half width and in half its time.
+  const auto distance = [&](const ValveCommand& command, double at, double y) {
+    const double y_low = valve_place(case_, command.first), y_high = valve_place(case_, command.last);
+    return std::abs(at - case_.controller.lead - 0.5 * (command.from + command.to) +
+                    0.5 * case_.controller.duration) *
+               v +
+           std::max({0.0, y_low - y, y - y_high});
+  };
+  for (std::size_t n = 0; n < s.particles.size(); ++n) {
+    const FeedParticle& p = s.particles[n];
+    const double at = p.x / v + p.late, y = p.y + p.beside, reach = outer_radius(p) + ejection_.reach;
+    if (y < valve_place(case_, c.first) - reach || y > valve_place(case_, c.last) + reach) continue;
+    const FlightEnd end = ejection_.fly(p, at, y, blows, false);
+    const bool member = s.object_of[n] == c.object;
+    if (!end.touched && !member) continue;
+    ShotBody body{.particle = p,
+                  .at = at - c.from,
+                  .y = y - middle,
+                  .counts = member,
+                  .ejected = end.ejected(),
+                  .gain = end.gain};
+    const bool other_target =
+        !member && s.object_of[n] >= 0 && s.objects[static_cast<std::size_t>(s.object_of[n])].eject;
+    if (!member && !other_target) {
+      const double mine = distance(c, at, y);
+      body.counts = std::none_of(commands.begin(), commands.end(), [&](const ValveCommand& other) {
+        const double theirs = distance(other, at, y);
+        return theirs < mine || (theirs == mine && &other < &c);
+      });
+    }
+    shot.bodies.push_back(body);
+  }
+  return shot;
+}
+
+std::vector<Shot> Sorter::shots(std::int64_t cell) const {
+  const Scene s = look(cell, cell + 1);
+  std::vector<Shot> list;
+  for (std::size_t n = 0; n < s.commands.size(); ++n)
+    if (feed_.cell_of(s.objects[static_cast<std::size_t>(s.commands[n].object)].x_low) == cell)
+      list.push_back(shot(s, s.commands, n));
+  return list;
+}
+
+SortedStretch Sorter::sort(std::int64_t first, std::int64_t last, int show) const {
+  Scene s = look(first, last);
+  const std::vector<ValveCommand>& commands = s.commands;
+  s.pulses = manifold_.pulses(commands);
+  vessel_.draw(s.pulses);
+  if (manifold_.dead_count() > 0) {
+    s.pulses_with_dead = manifold_.pulses(commands, true);
+    vessel_.draw(s.pulses_with_dead);
+  }
+  const std::vector<bool> single = standing_alone(s.particles, case_.camera.gap);
+
+  SortedStretch out;
+  out.cells.resize(static_cast<std::size_t>(last - first));
+  for (Tally& t : out.cells) {
+    t.kinds.resize(case_.classes.size());
+    t.length = feed_.cell_length();
+  }
+  const auto tally_at = [&](double x) -> Tally* {
+    const std::int64_t cell = feed_.cell_of(x);
+    return cell >= first && cell < last ? &out.cells[static_cast<std::size_t>(cell - first)] : nullptr;
+  };
+  for (std::size_t n = 0; n < s.particles.size(); ++n) {
+    const FeedParticle& p = s.particles[n];
+    Tally* tally = tally_at(p.x);
+    if (!tally) continue;
+    const bool shown = static_cast<int>(out.shown.size()) < show;
+    FlightEnd end;
+    const Fate fate = fate_of(s, n, shown ? &end : nullptr);
+    Tally::Kind& kind = tally->kinds[static_cast<std::size_t>(p.kind)];
+    kind.number[static_cast<std::size_t>(fate)] += 1.0;
+    kind.mass[static_cast<std::size_t>(fate)] += p.mass;
+    kind.area += p.prototype->area * p.scale * p.scale;
+    kind.alone += single[n];
+    const int o = s.object_of[n];
+    kind.alone_seen += o >= 0 && s.objects[static_cast<std::size_t>(o)].members.size() == 1;
+    if (shown) out.shown.push_back({p, fate, end.path, end.path_from});
+  }
+  const double begins = static_cast<double>(first - 1) * feed_.cell_length(),
+               ends = static_cast<double>(last + 1) * feed_.cell_length();
+  for (const SeenObject& o : s.objects)
+    if (Tally* tally = tally_at(o.x_low)) {
+      tally->objects += 1.0;
+      tally->cut += o.x_high > ends - camera_.pixel() || o.x_low < begins + camera_.pixel();
+    }
+  const double v = case_.launch.belt_speed;
+  for (const ValveCommand& c : commands)
+    if (Tally* tally = tally_at(s.objects[static_cast<std::size_t>(c.object)].x_low)) tally->shots += 1.0;
+  for (const auto& pulses : s.pulses)
+    for (const ValvePulse& p : pulses)
+      if (Tally* tally = tally_at(p.from * v)) {
+        tally->openings += 1.0;
+        tally->air += p.use * air_use_.mass(p.to - p.from);
+      }
+  if (show > 0) {
+    out.objects = s.objects;
+    out.pulses = s.pulses;
+  }
+  return out;
+}
+
+}  // namespace ejecta
