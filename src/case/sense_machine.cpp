@@ -7,6 +7,7 @@
 #include "case/extent.hpp"
 #include "case/findings.hpp"
 #include "case/load.hpp"
+#include "case/words.hpp"
 
 /// [sorter]: whether it is a whole machine, and one that can work. What needs shapes and sizes is checked by
 /// sorter/feed.cpp.

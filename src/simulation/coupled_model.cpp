@@ -29,11 +29,23 @@ constexpr double kFlightStep = 1e-4;
 
 }  // namespace
 
+namespace {
+
+const Case& one_run(const Case& c) {
+  if (c.campaign.enabled)
+    throw InputError(
+        fmt::format("{} is a campaign of {} cases\n  expected: one case\n  example:  ejecta campaign {}",
+                    c.path, c.campaign.parts.size(), c.path));
+  return c;
+}
+
+}  // namespace
+
 CoupledModel::CoupledModel(const Case& c, const Note& note)
-    : CoupledModel(c, c.flow.solver == FlowSolver::none ? Inflow{} : inflow_of(c, note)) {}
+    : CoupledModel(c, one_run(c).flow.solver == FlowSolver::none ? Inflow{} : inflow_of(c, note)) {}
 
 CoupledModel::CoupledModel(const Case& c, Inflow inflow)
-    : case_(with_copies(c)),
+    : case_(with_copies(one_run(c))),
       grid_(grid_or_cell(c)),
       inflow_(std::move(inflow)),
       flow_(make_flow_model(case_, grid_, inflow_)),

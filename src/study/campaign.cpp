@@ -8,6 +8,7 @@
 #include "base/error.hpp"
 #include "base/exit_code.hpp"
 #include "case/load.hpp"
+#include "case/words.hpp"
 #include "output/output_file.hpp"
 #include "output/report.hpp"
 #include "output/verdict.hpp"
@@ -43,7 +44,8 @@ class CampaignPart {
 
   /// Goes on with what the directory holds; `anew`: from the beginning.
   std::vector<std::string> words(bool anew) const {
-    std::vector<std::string> words{"ejecta", spec_.kind == CampaignKind::jet_sweep ? "jet" : word()};
+    std::vector<std::string> words{"ejecta",
+                                   spec_.kind == CampaignKind::jet_sweep ? "jet" : word(spec_.kind)};
     if (spec_.kind == CampaignKind::jet_sweep) words.push_back("--sweep");
     words.push_back(file_);
     for (const std::string& set : spec_.set) {
@@ -63,7 +65,7 @@ class CampaignPart {
 
   /// For the report; `run`: its number among the runs of the page.
   Json entry(const std::string& problem, int run) const {
-    Json e{{"kind", word()},           {"title", title_},
+    Json e{{"kind", word(spec_.kind)}, {"title", title_},
            {"figures", spec_.figures}, {"directory", directory_.filename().string()},
            {"done", is_done()},        {"problem", problem}};
     if (!is_done()) return e;
@@ -83,21 +85,6 @@ class CampaignPart {
   }
 
  private:
-  std::string word() const {
-    switch (spec_.kind) {
-      case CampaignKind::run:
-        return "run";
-      case CampaignKind::jet:
-        return "jet";
-      case CampaignKind::jet_sweep:
-        return "jet-sweep";
-      case CampaignKind::map:
-        return "map";
-      case CampaignKind::study:
-        break;
-    }
-    return "study";
-  }
   Json result() const {
     std::error_code none;
     const fs::path path = directory_ / "result.json";

@@ -28,10 +28,6 @@ void add_threads(CLI::App& command, int& threads) {
 Case load_and_warn(const CaseOptions& options, bool quiet) {
   std::vector<Problem> warnings;
   Case c = load_checked(case_file(options.path), options.overrides, &warnings);
-  if (c.campaign.enabled)
-    throw InputError(
-        fmt::format("{} is a campaign of {} cases\n  expected: one case\n  example:  ejecta campaign {}",
-                    c.path, c.campaign.parts.size(), c.path));
   if (!quiet)
     for (const Problem& p : warnings) fmt::print(stderr, "{}\n", render(p));
   return c;
