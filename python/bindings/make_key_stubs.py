@@ -1,6 +1,5 @@
 """Writes the stub of ejecta.keys from the schema: make_key_stubs.py FILE. An editor completes and explains keys with it."""
 
-import keyword
 import sys
 from pathlib import Path
 
@@ -14,7 +13,7 @@ def documented(what, indent):
 def stub(section, indent=""):
     lines = [f"{indent}class {section.__name__}(Section):", *documented(section, indent)]
     for name, value in vars(section).items():
-        if isinstance(value, ejecta.keys.Key) and not keyword.iskeyword(name):
+        if isinstance(value, ejecta.keys.Key):
             lines += [f"{indent}    {name}: ClassVar[Key]", *documented(value, indent)]
         elif isinstance(value, type):
             lines += stub(value, indent + "    ")

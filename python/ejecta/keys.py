@@ -1,5 +1,8 @@
 """All keys of a case, with their help: `help(ejecta.keys.valve)`, `ejecta.keys.valve.duration.help`. Each is the path that
-a case takes: `case[ejecta.keys.valve.duration] = "6 ms"`."""
+a case takes: `case[ejecta.keys.valve.duration] = "6 ms"`. Names that Python keeps for itself end in an underscore:
+`ejecta.keys.sorter.class_`."""
+
+import keyword
 
 from . import _core
 
@@ -27,6 +30,10 @@ class Section:
     """A section of the case file; its keys are its attributes."""
 
 
+def attribute_name(name):
+    return name + "_" if keyword.iskeyword(name) else name
+
+
 def _explained(section):
     lines = [("[[{}]]" if section["repeated"] else "[{}]").format(section["name"]) + "  " + section["help"], ""]
     for key in section["keys"]:
@@ -40,7 +47,8 @@ def _sections():
     tops = {}
     for section in _core.schema("incompressible"):
         parts = section["name"].split(".")
-        keys = {key["name"]: Key(section["name"], key) for key in section["keys"]}
+        keys = {attribute_name(key["name"]): Key(section["name"], key) for key in section["keys"]}
+        parts = [attribute_name(part) for part in parts]
         made = type(parts[-1], (Section,), {"__doc__": _explained(section), "__module__": __name__, **keys})
         if len(parts) == 1:
             tops[parts[0]] = made

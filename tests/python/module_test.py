@@ -3,7 +3,6 @@
 import ctypes
 import io
 import json
-import keyword
 import os
 import pickle
 import shutil
@@ -253,8 +252,9 @@ class Cases(unittest.TestCase):
         compile(stub, "keys.pyi", "exec")
         for section in ejecta._core.schema("incompressible"):
             for entry in section["keys"]:
-                if not keyword.iskeyword(entry["name"]):
-                    self.assertIn(f"{entry['name']}: ClassVar[Key]", stub)
+                self.assertIn(f"    {ejecta.keys.attribute_name(entry['name'])}: ClassVar[Key]", stub)
+        self.assertEqual(ejecta.keys.sorter.class_.density, "sorter.class.density")
+        self.assertEqual(ejecta.keys.study.vary.from_, "study.vary.from")
 
     def test_check(self):
         check = ejecta.check(short())
