@@ -98,7 +98,7 @@ void write_results(const Case& c, const Sorter& sorter, const SorterState& state
                    const SortDirectory& directory, const Json& corrected) {
   Json result = sorter_result(c, sorter, state);
   if (!corrected.empty()) {
-    result["tier"] = "fast, corrected by resolved shots";
+    if (corrected.contains("recovery")) result["tier"] = "fast, corrected by resolved shots";
     for (const auto& [key, value] : corrected.items()) {
       if (result.contains(key) && key != "resolved_shots") result["fast"][key] = result[key];
       result[key] = value;
@@ -187,13 +187,20 @@ int sort_case(const Case& c, const SortOptions& o) {
     }
   }
   write_results(c, sorter, state, directory, corrected);
+  const int failed = corrected.value("resolved_shots_failed", 0);
+  if (failed > 0)
+    fmt::print(
+        stderr,
+        "error: {} of {} shots could not be computed as runs, which leaves the others a biased sample: {}\n"
+        "  all of them:  ejecta study status {}\n",
+        failed, o.resolved, corrected.value("first_failure", ""), directory.file("resolved").string());
   if (!o.quiet) {
     const Json result = Json::parse(output::read_file(directory.file("result.json")));
     fmt::print("{}\nresults: {}\ntable:   {}\n", result.at("summary").get<std::string>(),
                directory.file("result.json").string(), directory.file("fates.csv").string());
     if (c.output.report) fmt::print("report:  {}\n", directory.file("report.html").string());
   }
-  return exit_done;
+  return failed > 0 ? exit_failure : exit_done;
 }
 
 }  // namespace ejecta

@@ -85,6 +85,10 @@ double error_of(const Share& s) { return s.known ? (s.high - s.low) / (2.0 * 1.9
 
 Json resolve_shots(const Case& c, const Sorter& sorter, const SorterState& state, const fs::path& directory,
                    const ResolvedOptions& o) {
+  if (c.feed.presentation == Presentation::independent)
+    throw InputError(
+        "shots of a feed whose particles may lie in each other cannot be computed as runs\n"
+        "  expected: particles that lie beside each other\n  example:  [feed] presentation = \"monolayer\"");
   const CounterRandom random(static_cast<std::uint64_t>(c.sorter.seed), std::uint64_t{1} << 60);
   std::vector<DrawnShot> drawn;
   std::vector<NewTask> runs;
@@ -129,6 +133,7 @@ Json resolve_shots(const Case& c, const Sorter& sorter, const SorterState& state
   }
   std::vector<std::array<double, 2>> number, mass;
   int failed = 0, computed = 0;
+  std::string first_failure;
   GainErrors all;
   std::map<std::string, GainErrors> by_class;
   for (const DrawnShot& d : drawn) {
@@ -136,7 +141,7 @@ Json resolve_shots(const Case& c, const Sorter& sorter, const SorterState& state
     if (d.any) {
       const std::size_t task = tasks[d.task];
       if (store.state(task) != TaskState::done) {
-        ++failed;
+        if (failed++ == 0) first_failure = store.failure(task);
         continue;
       }
       ++computed;
@@ -157,8 +162,9 @@ Json resolve_shots(const Case& c, const Sorter& sorter, const SorterState& state
   }
   Json r{
       {"resolved_shots", computed}, {"resolved_shots_failed", failed}, {"fast_against_resolved", all.json()}};
+  if (failed > 0) r["first_failure"] = first_failure;
   for (const auto& [name, errors] : by_class) r["fast_against_resolved"][name] = errors.json();
-  if (number.size() < 2) return r;
+  if (computed < 2) return r;  // nothing to correct with
   const auto& sums = state.products.sums;
   for (const bool by_mass : {false, true}) {
     const Correction k = correction_of(by_mass ? mass : number);

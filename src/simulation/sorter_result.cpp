@@ -178,7 +178,7 @@ Json sorter_view(const Case& c, const SortedStretch& stretch) {
   for (const ShownParticle& s : stretch.shown) {
     Json outline = Json::array(), path = Json::array();
     for (const Vec3& v : outline_of(s.particle))
-      outline.push_back({rounded(v.x() - s.particle.x), rounded(v.y() - s.particle.y)});
+      outline.push_back({rounded(s.particle.x - v.x()), rounded(v.y() - s.particle.y)});  // along the motion
     for (const Vec3& v : s.path) path.push_back({rounded(v.x()), rounded(v.y()), rounded(v.z())});
     view["particles"].push_back({{"kind", s.particle.kind},
                                  {"x", rounded(s.particle.x)},

@@ -36,7 +36,7 @@ struct FeedParticle {
   const Prototype* prototype = nullptr;
   double scale = 1.0;       ///< size over that of the prototype
   double x = 0.0, y = 0.0;  ///< m, centre of mass; y from the middle of the belt
-  double yaw = 0.0;         ///< rad, about z
+  double yaw = 0.0;         ///< rad, about z as it flies, x along the motion
   double mass = 0.0;        ///< kg
   double signal = 0.0;
   double late = 0.0, beside = 0.0;  ///< s, m: what it comes later and farther across than it was seen

@@ -79,8 +79,10 @@ std::vector<Vec3> outline_of(const FeedParticle& p) {
   const double c = std::cos(p.yaw), s = std::sin(p.yaw);
   std::vector<Vec3> out;
   out.reserve(p.prototype->outline.size());
-  for (const Vec3& v : p.prototype->outline)
-    out.push_back({p.x + p.scale * (c * v.x() - s * v.y()), p.y + p.scale * (s * v.x() + c * v.y()), 0.0});
+  // The strip's x runs against the motion: mirrored there, and the other way round to stay counter-clockwise.
+  for (auto v = p.prototype->outline.rbegin(); v != p.prototype->outline.rend(); ++v)
+    out.push_back(
+        {p.x - p.scale * (c * v->x() - s * v->y()), p.y + p.scale * (s * v->x() + c * v->y()), 0.0});
   return out;
 }
 
