@@ -27,6 +27,10 @@ diameter = "10 mm"
 """
 
 
+# Seconds are held to limits on request alone: EJECTA_TIMED=1, on a machine that does nothing else.
+TIMED = bool(os.environ.get("EJECTA_TIMED"))
+
+
 class Server:
     def __init__(self, folder):
         self.folder = folder
@@ -233,7 +237,8 @@ class Cases(ServerCase):
             self.server.post("/api/check", name="ball.toml", text=text + f"# {n}\n")
             times.append(time.monotonic() - start)
         print(f"check: median {1e3 * sorted(times)[10]:.1f} ms")
-        self.assertLess(sorted(times)[10], 0.1)
+        if TIMED:
+            self.assertLess(sorted(times)[10], 0.1)
 
     def test_schema_has_every_section(self):
         names = {section["name"] for section in self.server.get("/api/schema")}
@@ -341,7 +346,8 @@ class Runs(ServerCase):
         self.assertEqual(len(self.server.get("/api/runs")), 1001)
         seconds = time.monotonic() - start
         print(f"1001 runs listed in {1e3 * seconds:.0f} ms")
-        self.assertLess(seconds, 1.0)
+        if TIMED:
+            self.assertLess(seconds, 1.0)
 
 
 class Starting(unittest.TestCase):
