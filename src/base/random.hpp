@@ -4,7 +4,16 @@
 #include <cstdint>
 #include <numbers>
 
+#include "base/vec.hpp"
+
 namespace ejecta {
+
+/// A rotation drawn uniformly, from three numbers uniform in [0, 1) (Shoemake 1992, Graphics Gems III).
+inline Quat uniform_rotation(double u, double v, double w) {
+  const double a = 2 * std::numbers::pi * v, b = 2 * std::numbers::pi * w;
+  return Quat(std::sqrt(u) * std::cos(b), std::sqrt(1 - u) * std::sin(a), std::sqrt(1 - u) * std::cos(a),
+              std::sqrt(u) * std::sin(b));
+}
 
 /// Random numbers by counting: the n-th number of a stream is a pure function of seed, stream and n, so that
 /// any order of work and any number of threads give the same draws. Philox 4x32 with ten rounds (Salmon et

@@ -3,8 +3,9 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <numbers>
 #include <random>
+
+#include "base/random.hpp"
 
 namespace ejecta {
 namespace {
@@ -19,11 +20,9 @@ class Random {
   std::mt19937_64 bits_;
 };
 
-/// A rotation drawn uniformly (Shoemake 1992, Graphics Gems III).
 Quat any_rotation(Random& random) {
-  const double u = random(), a = 2 * std::numbers::pi * random(), b = 2 * std::numbers::pi * random();
-  return Quat(std::sqrt(u) * std::cos(b), std::sqrt(1 - u) * std::sin(a), std::sqrt(1 - u) * std::cos(a),
-              std::sqrt(u) * std::sin(b));
+  const double u = random(), v = random(), w = random();  // in this order
+  return uniform_rotation(u, v, w);
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 
 #include "base/error.hpp"
 #include "base/exit_code.hpp"
+#include "base/shell_word.hpp"
 #include "case/load.hpp"
 #include "case/words.hpp"
 #include "output/output_file.hpp"
@@ -36,11 +37,7 @@ class CampaignPart {
 
   const fs::path& directory() const { return directory_; }
 
-  bool is_done() const {
-    const Json r = result();
-    if (!r.is_object()) return false;
-    return spec_.kind != CampaignKind::map || r.value("state", "") != "running";
-  }
+  bool is_done() const { return is_finished(result()); }
 
   /// Goes on with what the directory holds; `anew`: from the beginning.
   std::vector<std::string> words(bool anew) const {
@@ -65,11 +62,15 @@ class CampaignPart {
 
   /// For the report; `run`: its number among the runs of the page.
   Json entry(const std::string& problem, int run) const {
-    Json e{{"kind", word(spec_.kind)}, {"title", title_},
-           {"figures", spec_.figures}, {"directory", directory_.filename().string()},
-           {"done", is_done()},        {"problem", problem}};
-    if (!is_done()) return e;
     Json r = result();
+    const bool done = is_finished(r);
+    Json e{{"kind", word(spec_.kind)},
+           {"title", title_},
+           {"figures", spec_.figures},
+           {"directory", directory_.filename().string()},
+           {"done", done},
+           {"problem", problem}};
+    if (!done) return e;
     if (is_a_run(spec_.kind)) {
       e["run"] = run;
       e["summary"] = output::verdict_sentence(r);
@@ -85,6 +86,9 @@ class CampaignPart {
   }
 
  private:
+  bool is_finished(const Json& r) const {
+    return r.is_object() && (spec_.kind != CampaignKind::map || r.value("state", "") != "running");
+  }
   Json result() const {
     std::error_code none;
     const fs::path path = directory_ / "result.json";
@@ -101,10 +105,7 @@ class CampaignPart {
 
 std::string shell_line(const std::vector<std::string>& words) {
   std::string line;
-  for (const std::string& w : words) {
-    const bool plain = w.find_first_of(" \"'$\\") == std::string::npos;
-    line += (line.empty() ? "" : " ") + (plain ? w : "'" + w + "'");
-  }
+  for (const std::string& w : words) line += (line.empty() ? "" : " ") + shell_word(w);
   return line;
 }
 

@@ -20,14 +20,10 @@ ClassMember drawn_member(const MapSpec& map, const Point2& at) {
   const CounterRandom random(static_cast<std::uint64_t>(map.seed), (number(at.x) << 32) ^ number(at.y));
   const auto [low, high] = map.size_factor;
   member.size_factor = low + (high - low) * random.uniform(0);
-  const double turn = 2.0 * std::numbers::pi;
   if (map.lying == MapLying::turned)
-    member.turn = Eigen::AngleAxisd(turn * random.uniform(1), Eigen::Vector3d::UnitZ());
-  if (map.lying == MapLying::any) {  // Shoemake 1992, "Uniform random rotations"
-    const double u = random.uniform(1), a = turn * random.uniform(2), b = turn * random.uniform(3);
-    const double r1 = std::sqrt(1.0 - u), r2 = std::sqrt(u);
-    member.turn = Eigen::Quaterniond(r2 * std::cos(b), r1 * std::sin(a), r1 * std::cos(a), r2 * std::sin(b));
-  }
+    member.turn = Eigen::AngleAxisd(2.0 * std::numbers::pi * random.uniform(1), Eigen::Vector3d::UnitZ());
+  if (map.lying == MapLying::any)
+    member.turn = uniform_rotation(random.uniform(1), random.uniform(2), random.uniform(3));
   return member;
 }
 

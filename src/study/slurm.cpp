@@ -12,6 +12,7 @@
 #include <thread>
 
 #include "base/error.hpp"
+#include "base/shell_word.hpp"
 #include "base/stopwatch.hpp"
 #include "output/output_file.hpp"
 
@@ -61,12 +62,6 @@ std::size_t largest_array() {
   const std::size_t equals = at == std::string::npos ? at : text.find('=', at);
   if (equals == std::string::npos) return 1000;
   return std::max<std::size_t>(1, std::stoul(text.substr(equals + 1)) - 1);  // indices run below it
-}
-
-std::string quoted(const std::string& word) {
-  std::string out = "'";
-  for (const char c : word) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return out + "'";
 }
 
 class Cluster {
@@ -150,8 +145,8 @@ std::string slurm_script(const TaskStore& store, const std::filesystem::path& pr
       "#SBATCH --output={}/slurm/%A_%a.log\n"
       "task=$(sed -n \"$((SLURM_ARRAY_TASK_ID + 1))p\" {})\n"
       "exec {} study run-task {} \"$task\"\n",
-      count - 1, directory, quoted(std::filesystem::absolute(list).string()), quoted(program.string()),
-      quoted(directory));
+      count - 1, directory, shell_word(std::filesystem::absolute(list).string()),
+      shell_word(program.string()), shell_word(directory));
 }
 
 bool run_on_slurm(const TaskStore& store, std::span<const std::size_t> tasks, const SlurmExecutor& executor) {
