@@ -127,8 +127,8 @@ void Boundaries::fill_side(const std::array<FieldView, kN>& fields, const Side& 
     };
     for (int a = -s.ghosts_a; a < 0; ++a) set(a, 0, a * s.step_a);
     if (s.step_a == 1) {
-#pragma omp simd
-      for (int a = 0; a < s.na; ++a) set(a, a, a);
+      for_each_in_lanes(
+          0, s.na, [&](int a) __attribute__((always_inline)) { set(a, a, a); });
     } else {
       for (int a = 0; a < s.na; ++a) set(a, a, a * s.step_a);
     }

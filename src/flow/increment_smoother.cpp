@@ -91,18 +91,18 @@ void IncrementSmoother::factorise(int number, ConstFieldView carried, ConstField
     const int after = std::min(m + 1, n - 1);  // the last couples with nothing
     const Real *here = carried.origin + m * step, *next = carried.origin + after * step,
                *face = closed.origin + after * step;
-#pragma omp simd
-    for (int lane = 0; lane < kLanes; ++lane) {
-      const std::ptrdiff_t at = kAxis == 0 ? start[lane] : start[0] + lane;
-      const Real mass = here[at] * volume, open = coupling * (Real(1) - face[at]);
-      const Real up = mass > Real(0) && next[at] > Real(0) ? open : Real(0);
-      const Real pivot = mass + low[lane] + up - low[lane] * factor[lane];
-      const Real inverse = mass > Real(0) ? Real(1) / pivot : Real(0);
-      scale[lane] = mass * inverse;
-      carry[lane] = low[lane] * inverse;
-      above[lane] = factor[lane] = up * inverse;
-      low[lane] = up;
-    }
+    for_each_in_lanes(
+        0, kLanes, [&](int lane) __attribute__((always_inline)) {
+          const std::ptrdiff_t at = kAxis == 0 ? start[lane] : start[0] + lane;
+          const Real mass = here[at] * volume, open = coupling * (Real(1) - face[at]);
+          const Real up = mass > Real(0) && next[at] > Real(0) ? open : Real(0);
+          const Real pivot = mass + low[lane] + up - low[lane] * factor[lane];
+          const Real inverse = mass > Real(0) ? Real(1) / pivot : Real(0);
+          scale[lane] = mass * inverse;
+          carry[lane] = low[lane] * inverse;
+          above[lane] = factor[lane] = up * inverse;
+          low[lane] = up;
+        });
   }
 }
 
@@ -206,12 +206,8 @@ void IncrementSmoother::smooth_row(int axis, const int* numbers, int m, const Pl
   for (int b = 0; b < cell_blocks_; ++b) {
     const int i0 = b * kRealLanes;
     const std::ptrdiff_t at = (numbers[b] * n + m) * kRealLanes;
-    if (numbers[b] < 0)
-#pragma omp simd
-      for (int lane = 0; lane < kRealLanes; ++lane) plain(i0 + lane);
-    else
-#pragma omp simd
-      for (int lane = 0; lane < kRealLanes; ++lane) cut(i0 + lane, at + lane);
+    if (numbers[b] < 0) for_each_in_lanes(0, kRealLanes, [&](int lane) { plain(i0 + lane); });
+    else for_each_in_lanes(0, kRealLanes, [&](int lane) { cut(i0 + lane, at + lane); });
   }
 }
 
