@@ -305,7 +305,9 @@ void Particles::note_friction() {
   if (planes_.size() == walls_.size()) return;  // no surfaces
   for (const SolidPair& p : solids_.pairs()) {
     const ContactHistory& h = p.history;
-    if (p.b.kind == PartKind::wall_triangle && h.touched())
+    if (p.b.kind != PartKind::wall_triangle) continue;
+    const Surface& surface = *walls_[static_cast<std::size_t>(p.b.index)].surface;
+    if (h.touched())
       friction_.push_back({p.a.index,
                            p.b.index,
                            Vec3(h.normal.x, h.normal.y, h.normal.z),
@@ -313,6 +315,8 @@ void Particles::note_friction() {
                            false,
                            0.0,
                            h.dent});
+    else if (h.side < 0 && !surface.two_sided())  // on its way through from behind, which leaves no dent
+      friction_.push_back({.ball = p.a.index, .wall = p.b.index, .dent = 0.0});
   }
   for (int n = 0; n < balls_.pair_count(); ++n) {
     const auto [ball, plane] = balls_.pair(n);
