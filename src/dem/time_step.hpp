@@ -20,7 +20,7 @@ double contact_time(const Body& body, const Materials& materials, double velocit
 /// How far a contact may come in a sub-step before that is divided: turn of its oscillation (rad; a step of
 /// stable_dt() has 0.16 in the impact it is made for, central differences are stable up to 2) and decay by
 /// its dashpot (velocities extrapolated to the whole step are stable up to 1).
-inline constexpr double kMostTurn = 0.35, kMostDecay = 0.7;
+inline constexpr double kMostTurn = 0.3, kMostDecay = 0.7;
 
 /// Sub-steps a second that a contact asks for, squared: `stiffness` over mass (1/s2), `damping`: dashpot over
 /// mass (1/s).
