@@ -231,6 +231,7 @@ double SolidContacts::apply_laws(const World& world, int begin, int end, double 
   double stored = 0.0, power = 0.0;               // before
   double least = 0.0, most = 0.0, parting = 0.0;  // J, J, W
   double error = 0.0;                             // of the rule
+  double stiffness = 0.0, damping = 0.0;          // of all together, over mass: 1/s2, 1/s
   bool whole = true;
   for (int n = begin; n < end; ++n) {
     SolidPair& p = pair(n);
@@ -263,10 +264,11 @@ double SolidContacts::apply_laws(const World& world, int begin, int end, double 
     least += m.least;
     most += m.most;
     parting += force * dot(m.contact.velocity, m.contact.normal);
-    const double stiffness = t.thickness > 0 ? force / t.thickness : 1.5 * m.spring.secant;
+    const double square = (t.thickness > 0 ? force / t.thickness : 1.5 * m.spring.secant) / m.contact.mass;
     const bool gradient = !(t.thickness > 0) || p.b.kind == PartKind::wall_plane;
     whole = whole && gradient && p.history.touched() && p.history.dent == 1.0;
-    error = std::max(error, stiffness * dt * dt / m.contact.mass);
+    error = std::max(error, square * dt * dt);
+    stiffness += square;
   }
   if (!(least > 0)) return 0.0;
   // With the factor f: f^2 least = stored now = had - f half.
@@ -287,16 +289,13 @@ double SolidContacts::apply_laws(const World& world, int begin, int end, double 
     p.history.energy = now;
     p.history.power = -factor * parting;
   }
-  double stiffness = 0.0, damping = 0.0;  // of all together, over mass
   for (std::size_t n = 0; n < touching.size(); ++n) {
     SolidPair& p = *touching[n];
     double all = 0.0;
     for (const SolidPair* q : touching) all += q->stored * std::max(0.0, q->touch.normal.dot(p.touch.normal));
     Meeting& m = meetings[n];
     m.contact.share = p.stored / all;
-    const double force = m.spring.secant * p.touch.overlap, mass = m.contact.mass;
-    stiffness += (p.touch.thickness > 0 ? force / p.touch.thickness : 1.5 * m.spring.secant) / mass;
-    damping += dashpot_of(m.spring, m.contact, world.constants(m)) / mass;
+    damping += dashpot_of(m.spring, m.contact, world.constants(m)) / m.contact.mass;
     apply_law(p, m, world.constants(m), world.materials.allow_tension(), dt);
   }
   return asked_rate_squared(kSeveral * stiffness, kSeveral * damping);
