@@ -186,6 +186,28 @@ TEST(BodiesInLiquid, ATailThatEntersDrawsNoMoreThanItLeaves) {
   }
 }
 
+/// A box slips into a box of long cells through an open face, aslant: beside the face a cell carries several
+/// small ones, each with an open end. What enters through one and leaves through the next has no pressure
+/// against it, so nothing may drive it.
+TEST(BodiesInLiquid, NothingCirclesThroughTheOpenEndsOfOneCell) {
+  std::array<Boundary, 6> faces = all(BoundaryKind::mirror);
+  faces[0].kind = faces[1].kind = BoundaryKind::open;
+  IncompressibleSetup setup;
+  setup.viscosity = 1e-3;
+  for (const double angle : {0.62, 0.4, 0.9}) {
+    Bodies b(Grid(even(-2, 2, 10), even(-0.5, 0.5, 1), even(-1.5, 1.5, 43)), faces, setup,
+             {turned(body_of(make_box({1.2, 4, 1.2}), {-2.6, 0, 0}, {1, 0, 0}), angle, Vec3::UnitY())},
+             Vec3::Zero());
+    double most = 0.0;
+    while (b.time < 1.5) {
+      b.step(0.002);
+      const auto u = b.flow.velocity();
+      for (int k = 0; k < b.grid.nz(); ++k) most = std::max(most, std::abs(double(u[0](0, 0, k))));
+    }
+    EXPECT_LT(most, 10.0) << angle;  // m/s; the box comes at 1 m/s
+  }
+}
+
 std::array<Boundary, 6> channel(double u) {
   std::array<Boundary, 6> faces = all(BoundaryKind::mirror);
   faces[0].kind = BoundaryKind::inflow;

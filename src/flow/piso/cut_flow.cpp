@@ -567,12 +567,13 @@ void CutFlow::end_velocities(const CutCells& cut, const OpenFace& open,
       Cell face = at;
       face[s] += side % 2;
       if (!grid_.active(d) || face[s] != (side % 2 ? grid_.n(d) : 0) || !open(side, face)) continue;
-      Real& velocity = q[s](face[0], face[1], face[2]);
-      velocity = u[s](c.i, c.j, c.k);
-      if (c.carrier != n) continue;
+      // Of a small cell that of its carrier: they share one pressure, which could not stop what circles
+      // through two open ends of one cell.
+      const CutCell& mover = cut.cells[static_cast<std::size_t>(c.carrier)];
       const Real* above = &p(face[0], face[1], face[2]);
       const Real at_face = (above[0] - above[-stride(p, d)]) * grid_.metrics(d).inv_distance[face[s]];
-      velocity += dt * (gradient_[static_cast<std::size_t>(n)][s] - at_face);
+      q[s](face[0], face[1], face[2]) = u[s](mover.i, mover.j, mover.k) +
+                                        dt * (gradient_[static_cast<std::size_t>(c.carrier)][s] - at_face);
     }
   });
 }

@@ -62,9 +62,9 @@ class CutFlow {
   void face_velocities(const CutCells& cut, const std::array<ConstFieldView, 3>& u_star, ConstFieldView p,
                        Real filter_time, const std::array<FieldView, 3>& q);
   /// q through open faces of the box, of cut cells beside them: as Boundaries::fill_face_velocity, but with
-  /// the pressure gradient that has moved the cell, which knows nothing of what lies behind a closed face; a
-  /// small cell has been moved by none. `open(side, face)`: whether the pressure moves what passes there,
-  /// side 2 d or 2 d + 1. To be called after face_velocities.
+  /// the pressure gradient that has moved the cell (of a small one its carrier), which knows nothing of what
+  /// lies behind a closed face. `open(side, face)`: whether the pressure moves what passes there, side 2 d or
+  /// 2 d + 1. To be called after face_velocities.
   using OpenFace = std::function<bool(int, const std::array<int, 3>&)>;
   void end_velocities(const CutCells& cut, const OpenFace& open, const std::array<ConstFieldView, 3>& u_star,
                       ConstFieldView p, Real dt, const std::array<FieldView, 3>& q) const;
