@@ -40,7 +40,7 @@ void fill_in(Case& c) {
   refine(c.grid, std::exchange(c.grid.refinement, 1.0));
   if (c.fluid.ideal_gas && c.fluid.density == 0.0)
     c.fluid.density = c.environment.pressure / (c.fluid.gas_constant * c.environment.temperature);
-  if (c.materials.empty() && !(c.bodies.empty() && c.walls.empty())) {
+  if (c.materials.empty() && !(c.bodies.empty() && c.walls.empty() && c.grains.empty())) {
     c.materials.emplace_back();  // the paper's
     c.materials.back().name = "ore";
   }
@@ -48,6 +48,13 @@ void fill_in(Case& c) {
     if (b.material.empty()) b.material = c.materials.front().name;
   for (WallSpec& w : c.walls)
     if (w.material.empty()) w.material = c.materials.front().name;
+  for (std::size_t n = 0; n < c.grains.size(); ++n) {
+    GrainsSpec& g = c.grains[n];
+    if (g.material.empty()) g.material = c.materials.front().name;
+    if (g.name.empty()) g.name = fmt::format("grains-{}", n + 1);
+    const auto box = grid_box(c);
+    if (!g.region && box) g.region = {box->low, box->high};
+  }
   for (std::size_t n = 0; n < c.bodies.size(); ++n)
     if (c.bodies[n].name.empty()) c.bodies[n].name = fmt::format("body-{}", n + 1);
   for (std::size_t n = 0; n < c.walls.size(); ++n)
