@@ -35,8 +35,23 @@ std::set<std::string> sections_of(const std::vector<Problem>& problems) {
   return names;
 }
 
+/// Grains that leave through a periodic side of the box come back on the other, as the fluid does.
+void join_periodic_sides(Case& c) {
+  const auto box = grid_box(c);
+  if (c.grains.empty() || !c.bodies.empty() || c.flow.solver == FlowSolver::none || !box) return;
+  std::vector<double>* extents[] = {&c.domain.x, &c.domain.y, &c.domain.z};
+  for (int a = 0; a < 3; ++a) {
+    const std::string name(1, "xyz"[a]);
+    std::vector<double>& extent = *extents[a];
+    if (c.boundary[2 * static_cast<std::size_t>(a)].type != BoundaryType::periodic || !extent.empty()) continue;
+    extent = {box->low[a], box->high[a]};
+    c.domain.periodic.push_back(name);
+  }
+}
+
 /// What follows from other keys.
 void fill_in(Case& c) {
+  join_periodic_sides(c);
   refine(c.grid, std::exchange(c.grid.refinement, 1.0));
   if (c.fluid.ideal_gas && c.fluid.density == 0.0)
     c.fluid.density = c.environment.pressure / (c.fluid.gas_constant * c.environment.temperature);

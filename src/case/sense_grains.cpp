@@ -121,6 +121,26 @@ void check_cells(const Case& c, const GrainsSpec& g, const std::string& at, Find
               fmt::format("[coupling] kernel_width = {:.0f}", kWideKernel));
 }
 
+/// Where the flow is periodic, grains have to be.
+void check_periodic_sides(const Case& c, Findings& found) {
+  const auto box = grid_box(c);
+  const std::vector<double>* extents[] = {&c.domain.x, &c.domain.y, &c.domain.z};
+  for (std::size_t a = 0; box && a < 3; ++a) {
+    const int d = static_cast<int>(a);
+    const double size = box->high[d] - box->low[d];
+    const bool joined = std::find(c.domain.periodic.begin(), c.domain.periodic.end(), std::string(1, "xyz"[a])) !=
+                        c.domain.periodic.end();
+    const bool same = extents[a]->size() == 2 && std::abs(extents[a]->front() - box->low[d]) < 1e-9 * size &&
+                      std::abs(extents[a]->back() - box->high[d]) < 1e-9 * size;
+    if (joined != (c.boundary[2 * a].type == BoundaryType::periodic) || (joined && !same))
+      found.error(c.bodies.empty() ? "domain.periodic" : "grains.0",
+                  fmt::format("grains and flow must both be periodic in {}, over the same length: the box is "
+                              "{:.4g} to {:.4g} mm",
+                              "xyz"[a], 1e3 * box->low[d], 1e3 * box->high[d]),
+                  "no [domain] along periodic sides of the box; it follows from them", "");
+  }
+}
+
 }  // namespace
 
 void sense_grains(const Case& c, Findings& found) {
@@ -133,6 +153,7 @@ void sense_grains(const Case& c, Findings& found) {
   if (flows && c.grid.geometry == Geometry::axisymmetric)
     found.error("grains.0", "axisymmetric geometry cannot hold grains", "cartesian geometry",
                 "geometry = \"cartesian\"");
+  if (flows) check_periodic_sides(c, found);
   for (std::size_t n = 0; n < c.grains.size(); ++n) {
     const GrainsSpec& g = c.grains[n];
     const std::string at = fmt::format("grains.{}.", n);
