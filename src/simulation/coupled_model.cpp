@@ -149,7 +149,8 @@ void CoupledModel::build_step() {
                      }});
   if (grains_)
     step_.push_back(
-        {"grains.collect", "f = K beta (u - v) + V_p (-grad p + div tau) - rho V_p g", [this](double, double) {
+        {"grains.collect", "f = K beta (u - v) + V_p (-grad p + div tau) - rho V_p g", [this](double time, double dt) {
+           if (air_) note_bed(time, dt);
            if (air_) grains_->collect(particles_, loads_);
            else std::fill(loads_.begin() + static_cast<std::ptrdiff_t>(scene_.bodies), loads_.end(), Load{});
          }});
@@ -236,6 +237,13 @@ void CoupledModel::sort_grains() {
     if (grain_x_[g] < edge.x() && b.position.x() >= edge.x())
       ++sorted_grains_[group][b.position.z() > edge.z() ? 0 : 1];
   }
+}
+
+void CoupledModel::note_bed(double time, double dt) {
+  if (time < 0.5 * case_.run.end_time) return;
+  bed_time_ += dt;
+  drop_sum_ += dt * drop().pressure;
+  height_sum_ += dt * grain_sums(particles_, scene_.bodies).centre.z();
 }
 
 PressureDrop CoupledModel::drop() const {
@@ -390,6 +398,7 @@ std::vector<double> CoupledModel::own_state() const {
   for (const auto* list : {&impulse_, &start_velocity_, &force_sum_, &friction_sum_, &torque_sum_})
     for (const Vec3& v : *list) own.insert(own.end(), {v.x(), v.y(), v.z()});
   own.insert(own.end(), peak_speed_.begin(), peak_speed_.end());
+  if (any_grains()) own.insert(own.end(), {bed_time_, drop_sum_, height_sum_});
   for (const auto& [above, below] : sorted_grains_) own.insert(own.end(), {double(above), double(below)});
   for (const Load& l : std::span(loads_).first(scene_.bodies))
     own.insert(own.end(), {l.force.x(), l.force.y(), l.force.z(), l.torque.x(), l.torque.y(), l.torque.z()});
@@ -413,6 +422,8 @@ void CoupledModel::restore_own(const std::vector<double>& numbers) {
   for (auto* list : {&impulse_, &start_velocity_, &force_sum_, &friction_sum_, &torque_sum_})
     for (Vec3& v : *list) v = own.vec3();
   for (double& v : peak_speed_) v = own.number();
+  if (any_grains())
+    for (double* v : {&bed_time_, &drop_sum_, &height_sum_}) *v = own.number();
   for (auto& sides : sorted_grains_)
     for (int& count : sides) count = own.whole(0, std::numeric_limits<int>::max());
   for (Load& l : std::span(loads_).first(scene_.bodies)) l.force = own.vec3(), l.torque = own.vec3();

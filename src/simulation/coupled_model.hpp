@@ -72,6 +72,11 @@ class CoupledModel : public Model {
   const std::vector<std::array<int, 2>>& sorted_grains() const { return sorted_grains_; }
   /// Along z through the box.
   PressureDrop drop() const;
+  /// The same with the height of the grains' centre of mass, m, mean over the second half of the run.
+  double mean_drop() const { return bed_time_ > 0.0 ? drop_sum_ / bed_time_ : drop().pressure; }
+  std::optional<double> mean_bed_height() const {
+    return bed_time_ > 0.0 ? std::optional(height_sum_ / bed_time_) : std::nullopt;
+  }
   /// Fields of the flow and of the grains in it.
   std::vector<CellField> air_fields() const;
   const std::vector<Load>& loads() const { return loads_; }
@@ -100,6 +105,7 @@ class CoupledModel : public Model {
   double step_of_courses() const;
   double step_of_grains() const;
   void sort_grains();
+  void note_bed(double time, double dt);
   double step_of_bodies(double time, double dt) const;
   std::vector<double> own_state() const;
   void restore_own(const std::vector<double>& numbers);
@@ -112,6 +118,7 @@ class CoupledModel : public Model {
   Particles& particles_;
   std::optional<ResolvedCoupling> coupling_;
   std::optional<GrainsInFlow> grains_;
+  double bed_time_ = 0.0, drop_sum_ = 0.0, height_sum_ = 0.0;
   std::vector<double> grain_x_;  // m, before the step, where they are sorted
   std::vector<std::array<int, 2>> sorted_grains_;
   CutCells cut_;

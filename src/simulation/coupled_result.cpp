@@ -184,6 +184,8 @@ void add_grain_figures(const CoupledModel& m, Json& result) {
   if (!grains) return;
   const PressureDrop drop = m.drop();
   out["pressure_drop_z_Pa"] = drop.pressure;
+  out["mean_pressure_drop_z_Pa"] = m.mean_drop();
+  if (const auto height = m.mean_bed_height()) out["mean_height_of_centre_m"] = *height;
   out["pressure_gradient_z_Pa_m"] = drop.distance > 0.0 ? drop.pressure / drop.distance : 0.0;
   out["largest_reynolds"] = grains->largest_reynolds();
   out["least_void_fraction"] = grains->least_fraction();

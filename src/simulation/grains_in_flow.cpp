@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "base/state_reader.hpp"
 #include "case/words.hpp"
@@ -36,6 +37,7 @@ Beyond beyond_face(const BoundarySpec& face) {
     case BoundaryType::moving_wall:
     case BoundaryType::slip:
     case BoundaryType::symmetry:
+    case BoundaryType::velocity:  // a plate that lets the fluid through
       return Beyond::mirror;
     case BoundaryType::periodic:
       return Beyond::periodic;
@@ -170,8 +172,15 @@ PressureDrop pressure_drop(const Grid& grid, ConstFieldView p, double scale) {
       }
     return sum / area;
   };
-  const std::vector<double>& z = grid.axis(2).centre;
-  return {scale * (mean(0) - mean(grid.nz() - 1)), z.back() - z.front()};
+  const Axis& z = grid.axis(2);
+  if (z.n == 1) return {0.0, z.length()};
+  // From the two layers next to a face, in a straight line.
+  const auto at_face = [&](std::size_t first, std::size_t next, double width) {
+    const double p0 = mean(static_cast<int>(first)), p1 = mean(static_cast<int>(next));
+    return p0 + (p0 - p1) * 0.5 * width / std::abs(z.centre[next] - z.centre[first]);
+  };
+  const std::size_t last = static_cast<std::size_t>(z.n) - 1;
+  return {scale * (at_face(0, 1, z.width.front()) - at_face(last, last - 1, z.width.back())), z.length()};
 }
 
 std::vector<output::Column> grain_columns(bool flow) {

@@ -56,8 +56,8 @@ struct GrainSums {
 /// Of all, or of those of one name.
 GrainSums grain_sums(const Particles& particles, std::size_t first, const std::string& name = "");
 
-/// Mean pressure of the lowest less that of the highest layer of cells along z, Pa, and how far apart their
-/// middles are, m.
+/// Mean pressure on the lower less that on the upper face of the box along z, Pa, and how far they are apart,
+/// m.
 struct PressureDrop {
   double pressure = 0.0, distance = 0.0;
 };
