@@ -10,7 +10,7 @@ namespace ejecta {
 struct FluidFraction {
   explicit FluidFraction(const Grid& grid) {
     for (Field* f : {&solids_before, &solids, &drag}) *f = grid.make_field();
-    for (auto* group : {&dragging, &seen, &push, &friction})
+    for (auto* group : {&dragging, &seen, &push})
       for (Field& f : *group) f = grid.make_field();
   }
 
@@ -25,9 +25,8 @@ struct FluidFraction {
   bool acts = true;  ///< on the fluid; false: only the results are wanted
 
   // Results of the last flow step: what a grain gathers.
-  std::array<Field, 3> seen;      ///< velocity on which the drag acted, m/s
-  std::array<Field, 3> push;      ///< -grad p / rho that acted on the fluid's part of each cell, m/s2
-  std::array<Field, 3> friction;  ///< div tau / rho, likewise, m/s2
+  std::array<Field, 3> seen;  ///< velocity on which the drag acted, m/s
+  std::array<Field, 3> push;  ///< (-grad p + div tau) / rho that acted on the fluid's part of each cell, m/s2
 };
 
 }  // namespace ejecta

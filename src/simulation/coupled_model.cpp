@@ -287,7 +287,19 @@ void CoupledModel::watch_air(double time) {
     peak_energy_ = std::max(peak_energy_, energy);
     if (time > inflow_.shut_from && energy < kDeadAir * peak_energy_) air_ = false;
   }
-  if (time > inflow_.shut_from && !any_grains() && !coupling_->any_inside(lumps())) air_ = false;
+  if (time > inflow_.shut_from && !coupling_->any_inside(lumps()) && grains_have_left()) air_ = false;
+}
+
+/// But for one in a hundred: some whirl on for long where nothing else happens.
+bool CoupledModel::grains_have_left() const {
+  const auto grains = particles_.bodies().subspan(scene_.bodies);
+  const Vec3 low = grid_.lower(), high = grid_.upper();
+  std::size_t inside = 0;
+  for (std::size_t n = 0; n < grains.size(); ++n)
+    inside += particles_.presence(static_cast<int>(scene_.bodies + n)) != Presence::gone &&
+              (grains[n].position.array() >= low.array()).all() &&
+              (grains[n].position.array() <= high.array()).all();
+  return 100 * inside <= grains.size();
 }
 
 /// What is prescribed may be at rest now and fast within the step: its highest speed in the whole run must

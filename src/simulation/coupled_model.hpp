@@ -105,6 +105,7 @@ class CoupledModel : public Model {
   double step_of_courses() const;
   double step_of_grains() const;
   void sort_grains();
+  bool grains_have_left() const;
   void note_bed(double time, double dt);
   double step_of_bodies(double time, double dt) const;
   std::vector<double> own_state() const;

@@ -72,7 +72,7 @@ TEST(GrainKernel, WeightsAddUpToOneAndFadeOnlyThroughOpenSides) {
   }
 }
 
-/// A step of a thousandth of the width moves no weight by more than twice the kernel's height says.
+/// A step of a thousandth of the width moves no weight by more than the kernel's height says.
 TEST(GrainKernel, NothingJumpsAsAGrainMoves) {
   for (const auto& sides : {kWalls, kJoined, kOpen}) {
     const Axis axis = graded(0.02, 20, 1.0);

@@ -8,12 +8,12 @@
 /// Where the volume of a grain lies and what it feels: one weight a cell, the same for both.
 namespace ejecta {
 
-/// Part of the kernel K(x) = (1 + cos(pi x)) / 2, |x| < 1, that lies below x: its integral from -1. K and
-/// its slope are continuous, so that what a moving grain leaves in a cell is too.
+/// Part of the kernel K(x) = (15/16) (1 - x^2)^2, |x| < 1, that lies below x: its integral from -1. K and its
+/// slope are continuous, so that what a moving grain leaves in a cell is too.
 inline double kernel_below(double x) {
-  if (x <= -1) return 0;
-  if (x >= 1) return 1;
-  return 0.5 * (1 + x + std::sin(3.14159265358979323846 * x) / 3.14159265358979323846);
+  x = std::clamp(x, -1.0, 1.0);
+  const double square = x * x;
+  return 0.5 + x * (15.0 / 16 - square * (10.0 / 16 - square * (3.0 / 16)));
 }
 
 /// What lies beyond a face of the box, for the part of a kernel that reaches there.

@@ -10,8 +10,6 @@
 namespace ejecta {
 namespace {
 
-double diameter_of(const Body& grain) { return 2 * grain.shape.bounding_radius(); }
-
 /// (1 - exp(-x)) / x
 double relaxed(double x) { return x > 1e-8 ? -std::expm1(-x) / x : 1 - 0.5 * x; }
 
@@ -22,7 +20,10 @@ double lag(double x) { return x > 1e-3 ? -1 / std::expm1(-x) - 1 / x : 0.5 + x /
 }  // namespace
 
 UnresolvedCoupling::UnresolvedCoupling(const Grid& grid, const UnresolvedSetup& setup)
-    : grid_(grid), setup_(setup) {}
+    : grid_(grid), setup_(setup) {
+  for (int d = 0; d < 3; ++d)
+    for (const double w : grid.axis(d).width) inverse_widths_[static_cast<std::size_t>(d)].push_back(1 / w);
+}
 
 template <class Visit>
 void UnresolvedCoupling::for_each_in_plane(const Place& p, int plane, const Visit& visit) const {
@@ -58,8 +59,8 @@ void UnresolvedCoupling::note_room(const CutCells& cut) {
 }
 
 /// Near bodies the fluid around them takes what would lie inside.
-void UnresolvedCoupling::place(const Body& grain, Place& out) const {
-  const double width = setup_.kernel_width * diameter_of(grain);
+void UnresolvedCoupling::place(const Body& grain, double diameter, Place& out) const {
+  const double width = setup_.kernel_width * diameter;
   double inside = 1;
   for (int d = 0; d < 3; ++d) {
     const Axis& axis = grid_.axis(d);
@@ -114,11 +115,12 @@ void UnresolvedCoupling::scatter(const std::array<FieldView, kN>& to, const Valu
         for (std::size_t c = 0; c < kN; ++c) cell[c] += w * value[c];
       });
     }
+    std::vector<double> inverse_area;
+    for (const double y : inverse_widths_[1]) inverse_area.push_back(y * inverse_widths_[2][p]);
     for (int j = 0; j < ny; ++j)
       for (int i = 0; i < nx; ++i) {
-        double volume = grid_.volume(i, j, k);
-        if (bodies_) volume *= double(room_(i, j, k));
-        const double inverse = volume > 0 ? 1 / volume : 0;
+        double inverse = inverse_widths_[0][static_cast<std::size_t>(i)] * inverse_area[static_cast<std::size_t>(j)];
+        if (bodies_) inverse = room_(i, j, k) > 0 ? inverse / double(room_(i, j, k)) : 0;
         const double* cell = &sums[kN * (static_cast<std::size_t>(j) * static_cast<std::size_t>(nx) +
                                          static_cast<std::size_t>(i))];
         for (std::size_t c = 0; c < kN; ++c) to[c](i, j, k) = static_cast<Real>(inverse * cell[c]);
@@ -132,17 +134,21 @@ void UnresolvedCoupling::map(std::span<const Body> grains, const std::vector<cha
   const int count = static_cast<int>(grains.size());
   places_.resize(grains.size());
   drags_.resize(grains.size());
+  for (std::size_t n = diameters_.size(); n < grains.size(); ++n) {
+    diameters_.push_back(2 * grains[n].shape.bounding_radius());
+    volumes_.push_back(grains[n].shape.mass_properties().volume);
+  }
   pushed_.resize(grains.size(), Vec3(0, 0, 0));
   note_room(cut);
   for_each_index(count, [&](int g) {
     const std::size_t n = static_cast<std::size_t>(g);
-    if (here[n]) place(grains[n], places_[n]);
+    if (here[n]) place(grains[n], diameters_[n], places_[n]);
     else places_[n].scale = 0;
   });
   list_planes();
   std::swap(f.solids_before, f.solids);
   scatter<1>({f.solids.view()},
-             [&](std::size_t n) { return std::array{grains[n].shape.mass_properties().volume}; });
+             [&](std::size_t n) { return std::array{volumes_[n]}; });
   if (!mapped_) f.solids_before = f.solids;  // they are there from the beginning
   mapped_ = true;
   for_each_index(count, [&](int g) {
@@ -178,7 +184,7 @@ void UnresolvedCoupling::find_drag(const Body& grain, std::size_t n,
   out.fraction = std::max(1 - packed / inside, 0.05);
   if (!setup_.drag) return;
   const bool held = grain.motion != Motion::free;
-  drag::Surroundings s{diameter_of(grain), (u - grain.velocity).norm(), out.fraction, setup_.fluid_density,
+  drag::Surroundings s{diameters_[n], (u - grain.velocity).norm(), out.fraction, setup_.fluid_density,
                        setup_.viscosity};
   out.reynolds = s.reynolds();
   double beta = setup_.drag(s);
@@ -188,10 +194,13 @@ void UnresolvedCoupling::find_drag(const Body& grain, std::size_t n,
     return;
   }
   const Vec3 a = setup_.gravity + pushed_[n];
-  // Twice, the second time with the mean slip of the step.
+  // Once more with the mean slip of the step, where that differs.
+  constexpr double kShort = 0.01;
   const Vec3 slip = u - grain.velocity, rest = -grain.mass / beta * a;
+  if (dt * beta > kShort * grain.mass) {
   s.slip = (rest + relaxed(dt * beta / grain.mass) * (slip - rest)).norm();
   beta = setup_.drag(s);
+  }
   const double x = dt * beta / grain.mass;
   out.coefficient = beta * relaxed(x);
   out.carried = grain.velocity + lag(x) * dt * a;
@@ -201,8 +210,7 @@ void UnresolvedCoupling::collect(std::span<const Body> grains, const std::vector
                                  const FluidFraction& f, std::span<Load> loads) {
   drag_force_.assign(grains.size(), Vec3(0, 0, 0));
   const std::array<ConstFieldView, 3> seen{f.seen[0].view(), f.seen[1].view(), f.seen[2].view()},
-      push{f.push[0].view(), f.push[1].view(), f.push[2].view()},
-      friction{f.friction[0].view(), f.friction[1].view(), f.friction[2].view()};
+      push{f.push[0].view(), f.push[1].view(), f.push[2].view()};
   for_each_index(static_cast<int>(grains.size()), [&](int g) {
     const std::size_t n = static_cast<std::size_t>(g);
     loads[n] = Load{};
@@ -215,12 +223,12 @@ void UnresolvedCoupling::collect(std::span<const Body> grains, const std::vector
       for (std::size_t c = 0; c < 3; ++c) {
         const int d = static_cast<int>(c);
         u[d] += w * double(seen[c](i, j, k));
-        gradients[d] += w * double(push[c](i, j, k) + friction[c](i, j, k));
+        gradients[d] += w * double(push[c](i, j, k));
       }
     });
     const GrainDrag& drag = drags_[n];
     drag_force_[n] = drag.coefficient * (u - inside * drag.carried);
-    const double displaced = setup_.fluid_density * grains[n].shape.mass_properties().volume;
+    const double displaced = setup_.fluid_density * volumes_[n];
     const Vec3 by_volume =
         displaced * (gradients + inside * Vec3(setup_.body_force - setup_.gravity));
     loads[n].force = drag_force_[n] + by_volume;

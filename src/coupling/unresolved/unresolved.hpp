@@ -64,7 +64,7 @@ class UnresolvedCoupling {
     double scale = 0.0;  // of the product of the weights: 1 but near bodies; 0: not there
   };
   void note_room(const CutCells& cut);
-  void place(const Body& grain, Place& out) const;
+  void place(const Body& grain, double diameter, Place& out) const;
   void list_planes();
   /// visit(i, j, k, weight) for every cell that a grain reaches in plane number `plane` of its own.
   template <class Visit>
@@ -82,6 +82,8 @@ class UnresolvedCoupling {
   UnresolvedSetup setup_;
   Field room_;            // part of each cell whose momentum is the fluid's, where there are bodies
   bool bodies_ = false;   // there are
+  std::array<std::vector<double>, 3> inverse_widths_;  // of the cells, 1/m
+  std::vector<double> diameters_, volumes_;            // of the grains, m, m3
   std::vector<Place> places_;
   std::vector<int> first_, listed_;  // grains that reach into each plane of cells, in their order
   std::vector<GrainDrag> drags_;

@@ -114,7 +114,7 @@ class Incompressible {
   BoundaryFlow predict_increment(double time, double h);
   void drag_cells(double h);
   void find_results(FluidFraction& f);
-  void find_friction(FluidFraction& f) const;
+  void find_friction();
   void book_grains(const FluidFraction& f, double dt);
   void book_through(const BoundaryFlow& through, double dt);
   BoundaryFlow predict(double a, double b, double time, Real dt, CutCells& cut, double weight);
@@ -151,6 +151,7 @@ class Incompressible {
   const FluidFraction* fraction_ = nullptr;      // of which the fluid is a part since the last step
   double fraction_dt_ = 0;
   Field no_pressure_;
+  std::array<Field, 3> friction_;  // div tau / rho at the beginning of a step with grains, m/s2
   Vec3 impulse_on_grains_{0, 0, 0};
   FlowTimes times_;
   FlowLedger ledger_;

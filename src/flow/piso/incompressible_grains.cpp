@@ -17,13 +17,13 @@ constexpr double kHalf = 0.5;  // what each stage of Heun's method counts
 
 void Incompressible::advance(double time, double dt, CutCells& cut, FluidFraction& f) {
   if (!fraction_step_) fraction_step_ = std::make_unique<FractionStep>(grid_, boundaries_, poisson_);
-  for (auto* group : {&f.seen, &f.push, &f.friction})
+  for (auto* group : {&f.seen, &f.push})
     for (Field& field : *group) field.fill(0);
   const bool takes_room = f.acts && cut.empty();
   fraction_ = takes_room ? &f : nullptr;
   fraction_dt_ = dt;
   boundaries_.fill_velocity(views(u_), views(q_));
-  find_friction(f);
+  find_friction();
   if (takes_room) {
     advance_through_grains(time, dt, cut, f);
   } else {
@@ -32,6 +32,10 @@ void Incompressible::advance(double time, double dt, CutCells& cut, FluidFractio
     grains_ = nullptr;
     find_results(f);
   }
+  for (std::size_t c = 0; c < 3; ++c)
+    for_each_cell(grid_.range(), [to = f.push[c].view(), from = friction_[c].view()](int i, int j, int k) {
+      to(i, j, k) += from(i, j, k);
+    });
   book_grains(f, dt);
 }
 
@@ -55,8 +59,7 @@ void Incompressible::advance_through_grains(double time, double dt, CutCells& cu
   const ConstFieldView now = f.solids.view(), before = f.solids_before.view();
   const auto gather = [&](Real stage, std::size_t c, ConstFieldView old, ConstFieldView u, Real a, Real b) {
     const Real acceleration = static_cast<Real>(setup_.acceleration[int(c)]);
-    for_each_cell(grid_.range(), [=, m = u_star_[c].view(), friction = f.friction[c].view()](int i, int j,
-                                                                                          int k) {
+    for_each_cell(grid_.range(), [=, m = u_star_[c].view(), friction = friction_[c].view()](int i, int j, int k) {
       const Real s = now(i, j, k);
       m(i, j, k) += a * (Real(1) - before(i, j, k)) * old(i, j, k) + b * (Real(1) - s) * u(i, j, k) +
                     stage * ((Real(1) - s) * acceleration - s * friction(i, j, k));
@@ -136,7 +139,9 @@ BoundaryFlow Incompressible::predict_increment(double time, double h) {
 
 /// div tau / rho of the velocity at the beginning of the step, as nu times the Laplacian: whatever it is, what
 /// the grains get the fluid loses.
-void Incompressible::find_friction(FluidFraction& f) const {
+void Incompressible::find_friction() {
+  if (friction_[0].size() == 0)
+    for (Field& field : friction_) field = grid_.make_field();
   const Metrics m[3] = {grid_.metrics(0), grid_.metrics(1), grid_.metrics(2)};
   const Real nu = static_cast<Real>(setup_.viscosity);
   const ConstFieldView eddy = turbulence_ ? turbulence_->eddy_viscosity() : ConstFieldView{};
@@ -144,7 +149,7 @@ void Incompressible::find_friction(FluidFraction& f) const {
   for (std::size_t c = 0; c < 3; ++c) {
     const ConstFieldView u = u_[c].view();
     for_each_cell(
-        grid_.range(), [=, out = f.friction[c].view()](int i, int j, int k) __attribute__((always_inline)) {
+        grid_.range(), [=, out = friction_[c].view()](int i, int j, int k) __attribute__((always_inline)) {
           const Real* at = u.row(j, k) + i;
           Real sum = 0;
           const auto add = [&](const Metrics& d, int n, std::ptrdiff_t s) __attribute__((always_inline)) {
@@ -204,12 +209,11 @@ void Incompressible::book_grains(const FluidFraction& f, double dt) {
     impulse_on_grains_[int(c)] =
         dt * setup_.density *
         reduce_sum(grid_.range(), [=, seen = f.seen[c].view(), dragging = f.dragging[c].view(),
-                                   push = f.push[c].view(), friction = f.friction[c].view()](int i, int j,
-                                                                                            int k) {
+                                   push = f.push[c].view()](int i, int j, int k) {
           double rate = double(drag(i, j, k)) * double(seen(i, j, k)) - double(dragging(i, j, k));
           if (room)
             rate += double(solids(i, j, k)) *
-                    (double(push(i, j, k)) + double(friction(i, j, k)) + acceleration);
+                    (double(push(i, j, k)) + acceleration);
           return rate * double(part(i, j, k)) * double(m[0].volume[i]) * double(m[1].volume[j]) *
                  double(m[2].volume[k]);
         });
