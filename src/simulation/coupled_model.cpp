@@ -290,7 +290,7 @@ void CoupledModel::watch_air(double time) {
   if (time > inflow_.shut_from && !coupling_->any_inside(lumps()) && grains_have_left()) air_ = false;
 }
 
-/// But for one in a hundred: some whirl on for long where nothing else happens.
+/// But for one in twenty: some whirl on for long where nothing else happens.
 bool CoupledModel::grains_have_left() const {
   const auto grains = particles_.bodies().subspan(scene_.bodies);
   const Vec3 low = grid_.lower(), high = grid_.upper();
@@ -299,7 +299,7 @@ bool CoupledModel::grains_have_left() const {
     inside += particles_.presence(static_cast<int>(scene_.bodies + n)) != Presence::gone &&
               (grains[n].position.array() >= low.array()).all() &&
               (grains[n].position.array() <= high.array()).all();
-  return 100 * inside <= grains.size();
+  return 20 * inside <= grains.size();
 }
 
 /// What is prescribed may be at rest now and fast within the step: its highest speed in the whole run must

@@ -59,6 +59,8 @@ UnresolvedSetup setup_of(const Case& c, double fluid_density) {
   return s;
 }
 
+constexpr double kFullFluid = 0.99;
+
 /// Up to where a law was fitted or derived: Reynolds number, and least fraction of fluid.
 struct Range {
   double reynolds = 1e300, fraction = 0.0;
@@ -121,6 +123,10 @@ std::vector<std::string> GrainsInFlow::warnings() const {
   if (least_fraction_ < range.fraction)
     all.push_back(fmt::format("the drag law \"{}\" holds down to a void fraction of {:.2f}; grains met {:.3f}",
                               word(case_.coupling.drag), range.fraction, least_fraction_));
+  if (fraction_.acts && first_ > 0 && least_fraction_ < kFullFluid)
+    all.push_back(fmt::format("grains take up to {:.3f} of the room between them; with bodies in the box the fluid "
+                              "is dragged by grains but not displaced",
+                              1.0 - least_fraction_));
   return all;
 }
 

@@ -25,35 +25,67 @@ UnresolvedCoupling::UnresolvedCoupling(const Grid& grid, const UnresolvedSetup& 
     for (const double w : grid.axis(d).width) inverse_widths_[static_cast<std::size_t>(d)].push_back(1 / w);
 }
 
+/// visit(i, count, j, k, weight, weights along x) for runs of cells in plane number `plane` of a grain's own.
 template <class Visit>
-void UnresolvedCoupling::for_each_in_plane(const Place& p, int plane, const Visit& visit) const {
-  const int k = wrapped(p.axis[2].first + plane, 2);
+void UnresolvedCoupling::for_each_run(const Place& p, int plane, const Visit& visit) const {
+  const int k = wrapped(p.axis[2].first + plane, 2), nx = grid_.nx();
   const double wz = p.scale * p.axis[2].weight[static_cast<std::size_t>(plane)];
+  const int first = p.axis[0].first, count = p.axis[0].count;
   for (int b = 0; b < p.axis[1].count; ++b) {
     const int j = wrapped(p.axis[1].first + b, 1);
-    const double wyz = wz * p.axis[1].weight[static_cast<std::size_t>(b)];
-    for (int a = 0; a < p.axis[0].count; ++a) {
-      const int i = wrapped(p.axis[0].first + a, 0);
-      const double w = wyz * p.axis[0].weight[static_cast<std::size_t>(a)];
-      visit(i, j, k, bodies_ ? w * double(room_(i, j, k)) : w);
-    }
+    const double w = wz * p.axis[1].weight[static_cast<std::size_t>(b)];
+    const double* along = p.axis[0].weight.data();
+    const int before = std::clamp(-first, 0, count), after = std::clamp(first + count - nx, 0, count);
+    if (before > 0) visit(first + nx, before, j, k, w, along);
+    if (const int within = count - before - after; within > 0)
+      visit(first + before, within, j, k, w, along + before);
+    if (after > 0) visit(0, after, j, k, w, along + count - after);
   }
 }
 
-template <class Visit>
-void UnresolvedCoupling::for_each_of(const Place& p, const Visit& visit) const {
-  for (int plane = 0; plane < p.axis[2].count; ++plane) for_each_in_plane(p, plane, visit);
+/// Sums of weight * field over the cells of a grain, and that of the weights.
+template <std::size_t kN>
+std::array<double, kN + 1> UnresolvedCoupling::gather(const Place& p,
+                                                      const std::array<ConstFieldView, kN>& fields) const {
+  std::array<double, kN + 1> sums{};
+  for (int plane = 0; plane < p.axis[2].count; ++plane)
+    for_each_run(p, plane, [&](int i, int n, int j, int k, double w, const double* along) {
+      Real weight[AxisWeights::kMost];
+      for (int a = 0; a < n; ++a) weight[a] = static_cast<Real>(along[a]);
+      if (p.near_bodies) {
+        const Real* room = room_.view().row(j, k) + i;
+        for (int a = 0; a < n; ++a) weight[a] *= room[a];
+      }
+      Real part[kN + 1] = {};
+      const Real* rows[kN];
+      for (std::size_t c = 0; c < kN; ++c) rows[c] = fields[c].row(j, k) + i;
+      for (int a = 0; a < n; ++a) {
+        for (std::size_t c = 0; c < kN; ++c) part[c] += weight[a] * rows[c][a];
+        part[kN] += weight[a];
+      }
+      for (std::size_t c = 0; c <= kN; ++c) sums[c] += w * double(part[c]);
+    });
+  return sums;
 }
 
 /// Cells whose fluid is carried by another have no velocity of their own, nor have cells in bodies.
 void UnresolvedCoupling::note_room(const CutCells& cut) {
   bodies_ = !cut.empty();
   if (!bodies_) return;
+  around_ = {grid_.nx(), 0, grid_.ny(), 0, grid_.nz(), 0};
+  const auto include = [&](int i, int j, int k) {
+    around_ = {std::min(around_.i0, i),     std::max(around_.i1, i + 1), std::min(around_.j0, j),
+               std::max(around_.j1, j + 1), std::min(around_.k0, k),     std::max(around_.k1, k + 1)};
+  };
   if (room_.size() == 0) room_ = grid_.make_field();
   room_.fill(1);
-  for (const GhostCell& g : cut.ghosts) room_(g.i, g.j, g.k) = 0;
+  for (const GhostCell& g : cut.ghosts) {
+    room_(g.i, g.j, g.k) = 0;
+    include(g.i, g.j, g.k);
+  }
   for (std::size_t n = 0; n < cut.cells.size(); ++n) {
     const CutCell& c = cut.cells[n];
+    include(c.i, c.j, c.k);
     room_(c.i, c.j, c.k) = c.locked || c.carrier != static_cast<int>(n) ? Real(0) : c.carried;
   }
 }
@@ -70,10 +102,15 @@ void UnresolvedCoupling::place(const Body& grain, double diameter, Place& out) c
     for (int n = 0; n < out.axis[d].count; ++n) sum += out.axis[d].weight[static_cast<std::size_t>(n)];
     inside *= sum;
   }
-  out.scale = 1;
-  if (!bodies_) return;
-  double open = 0;
-  for_each_of(out, [&](int, int, int, double w) { open += w; });
+  out.scale = inside > 0 ? 1 : 0;
+  out.near_bodies = false;
+  if (!bodies_ || !(inside > 0)) return;
+  // Bodies do not cross periodic sides.
+  const int low[3] = {around_.i0, around_.j0, around_.k0}, high[3] = {around_.i1, around_.j1, around_.k1};
+  for (int d = 0; d < 3; ++d)
+    if (out.axis[d].first >= high[d] || out.axis[d].first + out.axis[d].count <= low[d]) return;
+  out.near_bodies = true;
+  const double open = gather<0>(out, {})[0];
   out.scale = open > 1e-9 * inside && open > 0 ? inside / open : 0;
 }
 
@@ -104,16 +141,26 @@ void UnresolvedCoupling::scatter(const std::array<FieldView, kN>& to, const Valu
   for_each_index_dynamic(grid_.nz(), [&](int k) {
     thread_local std::vector<double> sums;
     sums.assign(kN * cells, 0.0);
+    const ConstFieldView room = room_.view();
     const std::size_t p = static_cast<std::size_t>(k);
     for (int e = first_[p]; e < first_[p + 1]; ++e) {
       const int entry = listed_[static_cast<std::size_t>(e)];
       const std::size_t n = static_cast<std::size_t>(entry / AxisWeights::kMost);
       const std::array<double, kN> value = values(n);
-      for_each_in_plane(places_[n], entry % AxisWeights::kMost, [&](int i, int j, int, double w) {
-        double* cell = &sums[kN * (static_cast<std::size_t>(j) * static_cast<std::size_t>(nx) +
-                                   static_cast<std::size_t>(i))];
-        for (std::size_t c = 0; c < kN; ++c) cell[c] += w * value[c];
-      });
+      const Place& place = places_[n];
+      for_each_run(place, entry % AxisWeights::kMost,
+                   [&](int i, int run, int j, int, double w, const double* along) {
+                     double weight[AxisWeights::kMost];
+                     for (int a = 0; a < run; ++a)
+                       weight[a] = place.near_bodies ? along[a] * double(room(i + a, j, k)) : along[a];
+                     double* row = &sums[static_cast<std::size_t>(j) * static_cast<std::size_t>(nx) +
+                                         static_cast<std::size_t>(i)];
+                     for (std::size_t c = 0; c < kN; ++c) {
+                       double* to = row + c * cells;
+                       const double v = w * value[c];
+                       for (int a = 0; a < run; ++a) to[a] += v * weight[a];
+                     }
+                   });
     }
     std::vector<double> inverse_area;
     for (const double y : inverse_widths_[1]) inverse_area.push_back(y * inverse_widths_[2][p]);
@@ -121,9 +168,9 @@ void UnresolvedCoupling::scatter(const std::array<FieldView, kN>& to, const Valu
       for (int i = 0; i < nx; ++i) {
         double inverse = inverse_widths_[0][static_cast<std::size_t>(i)] * inverse_area[static_cast<std::size_t>(j)];
         if (bodies_) inverse = room_(i, j, k) > 0 ? inverse / double(room_(i, j, k)) : 0;
-        const double* cell = &sums[kN * (static_cast<std::size_t>(j) * static_cast<std::size_t>(nx) +
-                                         static_cast<std::size_t>(i))];
-        for (std::size_t c = 0; c < kN; ++c) to[c](i, j, k) = static_cast<Real>(inverse * cell[c]);
+        const double* cell =
+            &sums[static_cast<std::size_t>(j) * static_cast<std::size_t>(nx) + static_cast<std::size_t>(i)];
+        for (std::size_t c = 0; c < kN; ++c) to[c](i, j, k) = static_cast<Real>(inverse * cell[c * cells]);
       }
   });
 }
@@ -171,13 +218,9 @@ void UnresolvedCoupling::find_drag(const Body& grain, std::size_t n,
   GrainDrag& out = drags_[n];
   out = {};
   if (!(places_[n].scale > 0)) return;
-  Vec3 u(0, 0, 0);
-  double packed = 0, inside = 0;
-  for_each_of(places_[n], [&](int i, int j, int k, double w) {
-    u += w * Vec3(velocity[0](i, j, k), velocity[1](i, j, k), velocity[2](i, j, k));
-    packed += w * double(solids(i, j, k));
-    inside += w;
-  });
+  const auto seen = gather<4>(places_[n], {velocity[0], velocity[1], velocity[2], solids});
+  Vec3 u(seen[0], seen[1], seen[2]);
+  const double packed = seen[3], inside = seen[4];
   if (!(inside > 0)) return;
   u /= inside;
   out.inside = inside;
@@ -216,16 +259,9 @@ void UnresolvedCoupling::collect(std::span<const Body> grains, const std::vector
     loads[n] = Load{};
     pushed_[n].setZero();
     if (!here[n] || !(places_[n].scale > 0)) return;
-    Vec3 u(0, 0, 0), gradients(0, 0, 0);
-    double inside = 0;
-    for_each_of(places_[n], [&](int i, int j, int k, double w) {
-      inside += w;
-      for (std::size_t c = 0; c < 3; ++c) {
-        const int d = static_cast<int>(c);
-        u[d] += w * double(seen[c](i, j, k));
-        gradients[d] += w * double(push[c](i, j, k));
-      }
-    });
+    const auto sums = gather<6>(places_[n], {seen[0], seen[1], seen[2], push[0], push[1], push[2]});
+    const Vec3 u(sums[0], sums[1], sums[2]), gradients(sums[3], sums[4], sums[5]);
+    const double inside = sums[6];
     const GrainDrag& drag = drags_[n];
     drag_force_[n] = drag.coefficient * (u - inside * drag.carried);
     const double displaced = setup_.fluid_density * volumes_[n];

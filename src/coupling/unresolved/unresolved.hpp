@@ -61,16 +61,16 @@ class UnresolvedCoupling {
  private:
   struct Place {
     AxisWeights axis[3];
-    double scale = 0.0;  // of the product of the weights: 1 but near bodies; 0: not there
+    double scale = 0.0;        // of the product of the weights: 1 but near bodies; 0: not there
+    bool near_bodies = false;  // room_ counts
   };
   void note_room(const CutCells& cut);
   void place(const Body& grain, double diameter, Place& out) const;
   void list_planes();
-  /// visit(i, j, k, weight) for every cell that a grain reaches in plane number `plane` of its own.
   template <class Visit>
-  void for_each_in_plane(const Place& p, int plane, const Visit& visit) const;
-  template <class Visit>
-  void for_each_of(const Place& p, const Visit& visit) const;
+  void for_each_run(const Place& p, int plane, const Visit& visit) const;
+  template <std::size_t kN>
+  std::array<double, kN + 1> gather(const Place& p, const std::array<ConstFieldView, kN>& fields) const;
   int wrapped(int i, int d) const { return i < 0 ? i + grid_.n(d) : i >= grid_.n(d) ? i - grid_.n(d) : i; }
   /// f(cell) = sum of values(grain, n) * weight over the grains, for kN fields at once.
   template <std::size_t kN, class Values>
@@ -82,6 +82,7 @@ class UnresolvedCoupling {
   UnresolvedSetup setup_;
   Field room_;            // part of each cell whose momentum is the fluid's, where there are bodies
   bool bodies_ = false;   // there are
+  Range3 around_;         // cells that they cut and fill
   std::array<std::vector<double>, 3> inverse_widths_;  // of the cells, 1/m
   std::vector<double> diameters_, volumes_;            // of the grains, m, m3
   std::vector<Place> places_;
