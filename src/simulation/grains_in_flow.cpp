@@ -54,6 +54,7 @@ UnresolvedSetup setup_of(const Case& c, double fluid_density) {
   s.body_force = c.flow.body_force;
   s.kernel_width = c.coupling.kernel_width;
   s.drag = law_of(c.coupling.drag);
+  s.acts = c.coupling.exchange == GrainExchange::two_way;
   for (std::size_t d = 0; d < 3; ++d)
     s.beyond[d] = {beyond_face(c.boundary[2 * d]), beyond_face(c.boundary[2 * d + 1])};
   return s;

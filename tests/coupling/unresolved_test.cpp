@@ -174,6 +174,7 @@ TEST(UnresolvedCoupling, DragIsTheExactRelaxationForAnyStep) {
   const Grid grid(graded(0.01, 10, 1.0), graded(0.01, 10, 1.0), graded(0.01, 10, 1.0));
   UnresolvedSetup setup = air({kWalls, kWalls, kWalls});
   setup.drag = drag::stokes;
+  setup.acts = false;
   setup.gravity = {0, 0, -9.81};
   setup.fluid_density = 1e-3;  // no buoyancy to speak of
   setup.viscosity = 1.8e-2;

@@ -6,6 +6,7 @@
 
 #include "base/parallel.hpp"
 #include "base/state_reader.hpp"
+#include "coupling/unresolved/own_wake.hpp"
 
 namespace ejecta {
 namespace {
@@ -93,16 +94,19 @@ void UnresolvedCoupling::note_room(const CutCells& cut) {
 /// Near bodies the fluid around them takes what would lie inside.
 void UnresolvedCoupling::place(const Body& grain, double diameter, Place& out) const {
   const double width = setup_.kernel_width * diameter;
-  double inside = 1;
+  double inside = 1, spread = 0;
   for (int d = 0; d < 3; ++d) {
     const Axis& axis = grid_.axis(d);
-    out.axis[d] = axis_weights(axis, grain.position[d], kernel_half_width(axis, grain.position[d], width),
-                               setup_.beyond[static_cast<std::size_t>(d)]);
+    const double h = kernel_half_width(axis, grain.position[d], width),
+                 cell = axis.width[static_cast<std::size_t>(axis.cell_at(grain.position[d]))];
+    out.axis[d] = axis_weights(axis, grain.position[d], h, setup_.beyond[static_cast<std::size_t>(d)]);
+    spread += (h * h / 7 + cell * cell / 12) / 3;  // variance of the kernel and of a cell
     double sum = 0;
     for (int n = 0; n < out.axis[d].count; ++n) sum += out.axis[d].weight[static_cast<std::size_t>(n)];
     inside *= sum;
   }
   out.scale = inside > 0 ? 1 : 0;
+  out.spread = std::sqrt(spread);
   out.near_bodies = false;
   if (!bodies_ || !(inside > 0)) return;
   // Bodies do not cross periodic sides.
@@ -226,12 +230,29 @@ void UnresolvedCoupling::find_drag(const Body& grain, std::size_t n,
   out.inside = inside;
   out.fraction = std::max(1 - packed / inside, 0.05);
   if (!setup_.drag) return;
-  const bool held = grain.motion != Motion::free;
-  drag::Surroundings s{diameters_[n], (u - grain.velocity).norm(), out.fraction, setup_.fluid_density,
-                       setup_.viscosity};
+  drag::Surroundings s{diameters_[n], 0, out.fraction, setup_.fluid_density, setup_.viscosity};
+  // The coefficient of a slip as it is seen: the true one is larger by what the grain itself moves.
+  const bool wakes = setup_.acts && grid_.active(0) && grid_.active(1) && grid_.active(2);
+  const auto coefficient = [&](double seen) {
+    s.slip = seen;
+    double beta = setup_.drag(s);
+    for (int again = 0; wakes && again < 2; ++again) {
+      const double sigma = places_[n].spread;
+      // Among many a drag law means the mean flow, which all of them make, this one too.
+      const double own = volumes_[n] / own_volume(sigma), others = std::max(1 - out.fraction - own, 0.0);
+      const double wake = own / (own + others) *
+                          own_wake(sigma, s.slip, s.density, s.viscosity, others * beta / (s.density * volumes_[n]));
+      const double larger = 1 / (1 - std::min(beta * wake, kMostWake));
+      s.slip = seen * larger;
+      beta = setup_.drag(s);
+      if (again == 1) beta *= larger;
+    }
+    return beta;
+  };
+  const Vec3 slip = u - grain.velocity;
+  double beta = coefficient(slip.norm());
   out.reynolds = s.reynolds();
-  double beta = setup_.drag(s);
-  if (held) {
+  if (grain.motion != Motion::free) {
     out.coefficient = beta;
     out.carried = grain.velocity;
     return;
@@ -239,10 +260,9 @@ void UnresolvedCoupling::find_drag(const Body& grain, std::size_t n,
   const Vec3 a = setup_.gravity + pushed_[n];
   // Once more with the mean slip of the step, where that differs.
   constexpr double kShort = 0.01;
-  const Vec3 slip = u - grain.velocity, rest = -grain.mass / beta * a;
   if (dt * beta > kShort * grain.mass) {
-  s.slip = (rest + relaxed(dt * beta / grain.mass) * (slip - rest)).norm();
-  beta = setup_.drag(s);
+    const Vec3 rest = -grain.mass / beta * a;
+    beta = coefficient((rest + relaxed(dt * beta / grain.mass) * (slip - rest)).norm());
   }
   const double x = dt * beta / grain.mass;
   out.coefficient = beta * relaxed(x);

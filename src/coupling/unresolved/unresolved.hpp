@@ -20,6 +20,7 @@ struct UnresolvedSetup {
   Vec3 gravity{0, 0, 0};
   Vec3 body_force{0, 0, 0};  ///< m/s2 that drives the fluid like a gradient of pressure
   std::array<std::array<Beyond, 2>, 3> beyond{};
+  bool acts = true;  ///< on the fluid: what a grain sees is then taken without its own wake
   double kernel_width = 3.0;                             ///< in grain diameters
   double (*drag)(const drag::Surroundings&) = nullptr;  ///< beta, kg/s; null: none
 };
@@ -63,6 +64,7 @@ class UnresolvedCoupling {
     AxisWeights axis[3];
     double scale = 0.0;        // of the product of the weights: 1 but near bodies; 0: not there
     bool near_bodies = false;  // room_ counts
+    double spread = 0.0;       // m, standard deviation of where its force acts and its velocity is seen
   };
   void note_room(const CutCells& cut);
   void place(const Body& grain, double diameter, Place& out) const;
