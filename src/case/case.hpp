@@ -253,8 +253,8 @@ struct GrainsSpec {
   double spread = 0.0;            ///< lognormal: standard deviation of ln(size)
   // How many there are, by one of these:
   int count = 0;
-  std::optional<double> mass;             ///< kg
-  std::optional<double> solids_fraction;  ///< of the region's volume
+  std::optional<double> mass;                 ///< kg
+  std::optional<double> solids_fraction;      ///< of the region's volume
   std::optional<std::array<Vec3, 2>> region;  ///< m, lower and upper corner; where there is no box: needed
   GrainPacking packing = GrainPacking::random;
   Vec3 velocity{0, 0, 0};  ///< m/s, at the start

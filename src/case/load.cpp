@@ -43,7 +43,8 @@ void join_periodic_sides(Case& c) {
   for (int a = 0; a < 3; ++a) {
     const std::string name(1, "xyz"[a]);
     std::vector<double>& extent = *extents[a];
-    if (c.boundary[2 * static_cast<std::size_t>(a)].type != BoundaryType::periodic || !extent.empty()) continue;
+    if (c.boundary[2 * static_cast<std::size_t>(a)].type != BoundaryType::periodic || !extent.empty())
+      continue;
     extent = {box->low[a], box->high[a]};
     c.domain.periodic.push_back(name);
   }

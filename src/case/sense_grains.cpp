@@ -15,10 +15,10 @@ namespace ejecta {
 namespace {
 
 constexpr double kClosePacking = std::numbers::pi / (3 * std::numbers::sqrt2);  // 0.7405
-constexpr double kRandomPacking = 0.3;      // what one after the other still finds a place
-constexpr double kCellsOfGrains = 3.0;      // least width of a cell, in diameters
-constexpr double kWideKernel = 6.0;         // diameters: over several cells of less width
-constexpr double kDilute = 0.01;            // solids: more is not one grain alone
+constexpr double kRandomPacking = 0.3;  // what one after the other still finds a place
+constexpr double kCellsOfGrains = 3.0;  // least width of a cell, in diameters
+constexpr double kWideKernel = 6.0;     // diameters: over several cells of less width
+constexpr double kDilute = 0.01;        // solids: more is not one grain alone
 
 double largest_size(const GrainsSpec& g) { return g.sizes == SizeLaw::uniform ? g.size_to : g.size; }
 
@@ -46,7 +46,9 @@ void check_sizes_of(const GrainsSpec& g, const std::string& at, Findings& found)
 void check_amount(const GrainsSpec& g, const std::string& at, Findings& found) {
   const int ways = (g.count > 0) + g.mass.has_value() + g.solids_fraction.has_value();
   if (ways == 1) return;
-  found.error(at + (ways == 0 ? "count" : g.mass ? "mass" : "solids_fraction"),
+  found.error(at + (ways == 0 ? "count"
+                    : g.mass  ? "mass"
+                              : "solids_fraction"),
               ways == 0 ? "it is not said how many grains there are"
                         : "it is said more than once how many grains there are",
               "one of `count`, `mass` and `solids_fraction`", "count = 10000");
@@ -70,21 +72,21 @@ void check_place(const Case& c, const GrainsSpec& g, const std::string& at, Find
   const Vec3 &low = (*g.region)[0], &high = (*g.region)[1];
   const double d = largest_size(g);
   if (!((high - low).minCoeff() >= d * (1 - 1e-9)))
-    return found.error(at + "region",
-                       fmt::format("the region is {:.4g} x {:.4g} x {:.4g} mm, grains are {:.4g} mm",
-                                   1e3 * (high - low).x(), 1e3 * (high - low).y(), 1e3 * (high - low).z(),
-                                   1e3 * d),
-                       "the lower and the upper corner, at least a grain apart along each axis");
+    return found.error(
+        at + "region",
+        fmt::format("the region is {:.4g} x {:.4g} x {:.4g} mm, grains are {:.4g} mm", 1e3 * (high - low).x(),
+                    1e3 * (high - low).y(), 1e3 * (high - low).z(), 1e3 * d),
+        "the lower and the upper corner, at least a grain apart along each axis");
   if (const auto box = grid_box(c); box && c.flow.solver != FlowSolver::none)
     for (int a = 0; a < 3; ++a) {
       const double slack = 1e-9 * (box->high[a] - box->low[a]);
       if (low[a] >= box->low[a] - slack && high[a] <= box->high[a] + slack) continue;
-      return found.error(at + "region",
-                         fmt::format("grains start outside the box: {:.4g} to {:.4g} mm along {}, the box is "
-                                     "{:.4g} to {:.4g} mm",
-                                     1e3 * low[a], 1e3 * high[a], "xyz"[a], 1e3 * box->low[a],
-                                     1e3 * box->high[a]),
-                         "a region inside the box, or a larger box");
+      return found.error(
+          at + "region",
+          fmt::format("grains start outside the box: {:.4g} to {:.4g} mm along {}, the box is "
+                      "{:.4g} to {:.4g} mm",
+                      1e3 * low[a], 1e3 * high[a], "xyz"[a], 1e3 * box -> low[a], 1e3 * box -> high[a]),
+          "a region inside the box, or a larger box");
     }
   if (g.over > 0.0) return;  // they go on while others come
   const double packed = packing_of(c, g);
@@ -111,14 +113,15 @@ void check_cells(const Case& c, const GrainsSpec& g, const std::string& at, Find
   const double d = largest_size(g), cells = narrowest / d;
   if (cells >= kCellsOfGrains * (1 - 1e-9) || narrowest > 1e299) return;
   if (c.coupling.kernel_width >= kWideKernel && cells >= 1.0) return;
-  found.error(at + "size",
-              fmt::format("cells of {:.4g} mm are {:.2f} grains of {:.4g} mm wide: below {:.0f} a grain is no "
-                          "longer small in its cell",
-                          1e3 * narrowest, cells, 1e3 * d, kCellsOfGrains),
-              fmt::format("coarser cells; or grains as [[body]] that the grid resolves (8 cells each); or, down "
-                          "to one grain a cell, a wider kernel: coupling.kernel_width of {:.0f}",
-                          kWideKernel),
-              fmt::format("[coupling] kernel_width = {:.0f}", kWideKernel));
+  found.error(
+      at + "size",
+      fmt::format("cells of {:.4g} mm are {:.2f} grains of {:.4g} mm wide: below {:.0f} a grain is no "
+                  "longer small in its cell",
+                  1e3 * narrowest, cells, 1e3 * d, kCellsOfGrains),
+      fmt::format("coarser cells; or grains as [[body]] that the grid resolves (8 cells each); or, down "
+                  "to one grain a cell, a wider kernel: coupling.kernel_width of {:.0f}",
+                  kWideKernel),
+      fmt::format("[coupling] kernel_width = {:.0f}", kWideKernel));
 }
 
 /// Where the flow is periodic, grains have to be.
@@ -128,15 +131,15 @@ void check_periodic_sides(const Case& c, Findings& found) {
   for (std::size_t a = 0; box && a < 3; ++a) {
     const int d = static_cast<int>(a);
     const double size = box->high[d] - box->low[d];
-    const bool joined = std::find(c.domain.periodic.begin(), c.domain.periodic.end(), std::string(1, "xyz"[a])) !=
-                        c.domain.periodic.end();
+    const bool joined = std::find(c.domain.periodic.begin(), c.domain.periodic.end(),
+                                  std::string(1, "xyz"[a])) != c.domain.periodic.end();
     const bool same = extents[a]->size() == 2 && std::abs(extents[a]->front() - box->low[d]) < 1e-9 * size &&
                       std::abs(extents[a]->back() - box->high[d]) < 1e-9 * size;
     if (joined != (c.boundary[2 * a].type == BoundaryType::periodic) || (joined && !same))
       found.error(c.bodies.empty() ? "domain.periodic" : "grains.0",
                   fmt::format("grains and flow must both be periodic in {}, over the same length: the box is "
                               "{:.4g} to {:.4g} mm",
-                              "xyz"[a], 1e3 * box->low[d], 1e3 * box->high[d]),
+                              "xyz"[a], 1e3 * box -> low[d], 1e3 * box -> high[d]),
                   "no [domain] along periodic sides of the box; it follows from them", "");
   }
 }

@@ -74,10 +74,10 @@ std::vector<Vec3> lattice_places(const GrainsSpec& g, std::size_t count, double 
     h[a] = periodic[a] ? edges[a] / n[a] : n[a] > 1 ? (edges[a] - d) / (n[a] - 1) : 1e300;
   const double nearest = std::min({std::hypot(h[0], h[1]), std::hypot(h[1], h[2]), std::hypot(h[0], h[2])});
   if (points(step) < static_cast<double>(count) || nearest < d * (1 - 1e-9))
-    throw InputError(
-        fmt::format("grains \"{}\": {} of {:.4g} mm do not fit into the region even as a lattice; fewer, or a "
-                    "larger region",
-                    g.name, count, 1e3 * d));
+    throw InputError(fmt::format(
+        "grains \"{}\": {} of {:.4g} mm do not fit into the region even as a lattice; fewer, or a "
+        "larger region",
+        g.name, count, 1e3 * d));
   std::vector<Vec3> places;
   for (int k = 0; k < n[2]; ++k)
     for (int j = 0; j < n[1]; ++j)
@@ -204,10 +204,10 @@ void add_group(const GrainsSpec& g, const Particles& particles, std::vector<Body
     for (std::size_t n = 0; n < sizes.size(); ++n) {
       const auto x = room.find(sizes[n], random);
       if (!x)
-        throw InputError(
-            fmt::format("grains \"{}\": the {}-th of {} finds no place in the region at random after {} tries; "
-                        "fewer, a larger region, or packing = \"lattice\"",
-                        g.name, n + 1, sizes.size(), kTries));
+        throw InputError(fmt::format(
+            "grains \"{}\": the {}-th of {} finds no place in the region at random after {} tries; "
+            "fewer, a larger region, or packing = \"lattice\"",
+            g.name, n + 1, sizes.size(), kTries));
       places.push_back(*x);
     }
   }

@@ -32,7 +32,8 @@ void NeighbourSearch::set_large_apart(const std::vector<Item>& items) {
     std::iota(small_.begin(), small_.end(), 0);
   }
   largest_small_ = 0.0;
-  for (const int n : small_) largest_small_ = std::max(largest_small_, items[static_cast<std::size_t>(n)].radius);
+  for (const int n : small_)
+    largest_small_ = std::max(largest_small_, items[static_cast<std::size_t>(n)].radius);
 }
 
 /// Pairs of the n-th large item with all small ones and with the large ones after it.
@@ -101,8 +102,7 @@ void NeighbourSearch::sort_into_cells(const std::vector<Item>& items, double edg
   for (std::size_t n = 0; n < small_.size(); ++n) {
     const Item& item = item_of(n);
     sorted_[static_cast<std::size_t>(cursor_[static_cast<std::size_t>(cell_of_[n])]++)] = {
-        item.centre.x(), item.centre.y(),     item.centre.z(), item.radius,
-        item.body,       small_[n],           cell_of_[n]};
+        item.centre.x(), item.centre.y(), item.centre.z(), item.radius, item.body, small_[n], cell_of_[n]};
   }
 }
 

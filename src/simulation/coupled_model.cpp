@@ -83,8 +83,7 @@ CouplingSetup CoupledModel::coupling_setup() const {
     s.viscosity = case_.fluid.viscosity;
   for (std::size_t d = 0; d < 3; ++d)
     s.periodic[d] = grid_.active(int(d)) && case_.boundary[2 * d].type == BoundaryType::periodic;
-  for (const Body& b : lumps())
-    s.roughness.push_back(particles_.materials().spec(b.material).roughness);
+  for (const Body& b : lumps()) s.roughness.push_back(particles_.materials().spec(b.material).roughness);
   return s;
 }
 
@@ -148,12 +147,14 @@ void CoupledModel::build_step() {
                        }
                      }});
   if (grains_)
-    step_.push_back(
-        {"grains.collect", "f = K beta (u - v) + V_p (-grad p + div tau) - rho V_p g", [this](double time, double dt) {
-           if (air_) note_bed(time, dt);
-           if (air_) grains_->collect(particles_, loads_);
-           else std::fill(loads_.begin() + static_cast<std::ptrdiff_t>(scene_.bodies), loads_.end(), Load{});
-         }});
+    step_.push_back({"grains.collect", "f = K beta (u - v) + V_p (-grad p + div tau) - rho V_p g",
+                     [this](double time, double dt) {
+                       if (air_) note_bed(time, dt);
+                       if (air_) grains_->collect(particles_, loads_);
+                       else
+                         std::fill(loads_.begin() + static_cast<std::ptrdiff_t>(scene_.bodies), loads_.end(),
+                                   Load{});
+                     }});
   if (!particles_.bodies().empty())
     step_.push_back({"bodies.advance", "m dV/dt = F_contact + m g + F_fluid, I dw/dt + w x I w = T",
                      [this](double, double dt) {
@@ -170,8 +171,7 @@ void CoupledModel::build_step() {
                      }});
   if (splitter_)
     step_.push_back(
-        {"splitter.watch", "ejected when the centre passes above the edge",
-         [this](double time, double dt) {
+        {"splitter.watch", "ejected when the centre passes above the edge", [this](double time, double dt) {
            splitter_->watch(lumps(), before_, time + dt, dt);
            sort_grains();
          }});

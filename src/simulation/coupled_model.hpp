@@ -68,7 +68,8 @@ class CoupledModel : public Model {
   bool any_grains() const { return particles_.bodies().size() > scene_.bodies; }
   /// Null without grains or without a flow.
   const GrainsInFlow* grains() const { return grains_ ? &*grains_ : nullptr; }
-  /// Grains that passed above and below the edge of the dividing plate, of each name in the order of the case.
+  /// Grains that passed above and below the edge of the dividing plate, of each name in the order of the
+  /// case.
   const std::vector<std::array<int, 2>>& sorted_grains() const { return sorted_grains_; }
   /// Along z through the box.
   PressureDrop drop() const;

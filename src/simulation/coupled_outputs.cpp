@@ -79,8 +79,7 @@ void CoupledOutputs::open_histories() {
     return keep_histories_ ? &histories_.open(name, std::move(columns)) : nullptr;
   };
   if (keep_histories_ && model_.lumps().size() <= kHistories)
-    for (const Body& b : model_.lumps())
-      bodies_.push_back(open("body-" + b.name, body_columns()));
+    for (const Body& b : model_.lumps()) bodies_.push_back(open("body-" + b.name, body_columns()));
   if (keep_histories_ && model_.any_grains())
     grains_ = open("grains", grain_columns(model_.flow() != nullptr));
   if (!model_.flow()) {
@@ -212,8 +211,8 @@ void CoupledOutputs::write_fields(double time) {
 
 void CoupledOutputs::write_grain_history(double time) {
   const GrainSums s = grain_sums(model_.particles(), model_.first_grain());
-  std::vector<double> row{double(s.count),  s.mass,         s.centre.x(),   s.centre.y(), s.centre.z(),
-                          s.velocity.x(),   s.velocity.y(), s.velocity.z(), s.height,     s.kinetic_energy};
+  std::vector<double> row{double(s.count), s.mass,         s.centre.x(),   s.centre.y(), s.centre.z(),
+                          s.velocity.x(),  s.velocity.y(), s.velocity.z(), s.height,     s.kinetic_energy};
   if (model_.flow()) row.push_back(model_.drop().pressure);
   grains_->add(time, row);
 }

@@ -122,12 +122,14 @@ std::vector<std::string> GrainsInFlow::warnings() const {
     all.push_back(fmt::format("the drag law \"{}\" holds up to Re = {:.4g}; grains met {:.4g}",
                               word(case_.coupling.drag), range.reynolds, largest_reynolds_));
   if (least_fraction_ < range.fraction)
-    all.push_back(fmt::format("the drag law \"{}\" holds down to a void fraction of {:.2f}; grains met {:.3f}",
-                              word(case_.coupling.drag), range.fraction, least_fraction_));
+    all.push_back(
+        fmt::format("the drag law \"{}\" holds down to a void fraction of {:.2f}; grains met {:.3f}",
+                    word(case_.coupling.drag), range.fraction, least_fraction_));
   if (fraction_.acts && first_ > 0 && least_fraction_ < kFullFluid)
-    all.push_back(fmt::format("grains take up to {:.3f} of the room between them; with bodies in the box the fluid "
-                              "is dragged by grains but not displaced",
-                              1.0 - least_fraction_));
+    all.push_back(
+        fmt::format("grains take up to {:.3f} of the room between them; with bodies in the box the fluid "
+                    "is dragged by grains but not displaced",
+                    1.0 - least_fraction_));
   return all;
 }
 
@@ -151,7 +153,8 @@ GrainSums grain_sums(const Particles& particles, std::size_t first, const std::s
   const auto bodies = particles.bodies();
   for (std::size_t n = first; n < bodies.size(); ++n) {
     const Body& b = bodies[n];
-    if (particles.presence(static_cast<int>(n)) != Presence::here || (!name.empty() && b.name != name)) continue;
+    if (particles.presence(static_cast<int>(n)) != Presence::here || (!name.empty() && b.name != name))
+      continue;
     ++s.count;
     s.mass += b.mass;
     s.centre += b.mass * b.position;
@@ -162,7 +165,8 @@ GrainSums grain_sums(const Particles& particles, std::size_t first, const std::s
   if (s.count == 0) return s;
   s.centre /= s.mass;
   s.velocity /= s.mass;
-  const auto at = heights.begin() + static_cast<std::ptrdiff_t>(0.95 * static_cast<double>(heights.size() - 1));
+  const auto at =
+      heights.begin() + static_cast<std::ptrdiff_t>(0.95 * static_cast<double>(heights.size() - 1));
   std::nth_element(heights.begin(), at, heights.end());
   s.height = *at;
   return s;

@@ -47,11 +47,11 @@ class GrainsInFlow {
 /// Sums over the grains that are there.
 struct GrainSums {
   int count = 0;
-  double mass = 0.0;           ///< kg
-  Vec3 centre{0, 0, 0};        ///< m, of mass
-  Vec3 velocity{0, 0, 0};      ///< m/s, mean by mass
-  double height = 0.0;         ///< m, z below which 95 % of them lie
-  double kinetic_energy = 0.0; ///< J
+  double mass = 0.0;            ///< kg
+  Vec3 centre{0, 0, 0};         ///< m, of mass
+  Vec3 velocity{0, 0, 0};       ///< m/s, mean by mass
+  double height = 0.0;          ///< m, z below which 95 % of them lie
+  double kinetic_energy = 0.0;  ///< J
 };
 /// Of all, or of those of one name.
 GrainSums grain_sums(const Particles& particles, std::size_t first, const std::string& name = "");

@@ -133,10 +133,10 @@ TEST(UnresolvedCoupling, ActionIsReaction) {
       for (int i = 0; i < 12; ++i)
         for (int c = 0; c < 3; ++c) {
           const std::size_t d = static_cast<std::size_t>(c);
-          from_fluid[c] += 1.2 * grid.volume(i, j, k) *
-                           (double(f.drag(i, j, k)) * double(f.seen[d](i, j, k)) -
-                            double(f.dragging[d](i, j, k)) +
-                            double(f.solids(i, j, k)) * double(f.push[d](i, j, k)));
+          from_fluid[c] +=
+              1.2 * grid.volume(i, j, k) *
+              (double(f.drag(i, j, k)) * double(f.seen[d](i, j, k)) - double(f.dragging[d](i, j, k)) +
+               double(f.solids(i, j, k)) * double(f.push[d](i, j, k)));
         }
   EXPECT_LT((on_grains - from_fluid).norm(), kRoundOff * size);
   EXPECT_GT(by_drag.norm(), 1e-3 * size);  // there is something to compare
@@ -168,8 +168,8 @@ TEST(UnresolvedCoupling, AnyNumberOfThreadsGivesTheSameBits) {
   EXPECT_EQ(all[0], all[2]);
 }
 
-/// A stiff grain in a wind that it does not notice: after one step of a hundred of its times it has come to its
-/// own velocity in it, gravity counted, and a slow one has gained what an exact solution says.
+/// A stiff grain in a wind that it does not notice: after one step of a hundred of its times it has come to
+/// its own velocity in it, gravity counted, and a slow one has gained what an exact solution says.
 TEST(UnresolvedCoupling, DragIsTheExactRelaxationForAnyStep) {
   const Grid grid(graded(0.01, 10, 1.0), graded(0.01, 10, 1.0), graded(0.01, 10, 1.0));
   UnresolvedSetup setup = air({kWalls, kWalls, kWalls});
@@ -288,8 +288,8 @@ TEST(FluidWithGrains, MakesRoomForACloudThatIsCarried) {
   EXPECT_GT(fastest, 1e-3);  // it does flow
 }
 
-/// Drag on one grain dragged through cells of three diameters, aslant to them, in a fluid that it moves: ripples
-/// by less than 1 %, and a grid shifted by half a cell gives the same mean within that.
+/// Drag on one grain dragged through cells of three diameters, aslant to them, in a fluid that it moves:
+/// ripples by less than 1 %, and a grid shifted by half a cell gives the same mean within that.
 TEST(FluidWithGrains, DragOnAGrainRipplesLittleAsItCrossesCells) {
   const double d = 1e-3, h = 3e-3;
   double mean[2] = {0, 0};
@@ -326,7 +326,8 @@ TEST(FluidWithGrains, GrainsThatDoNotActChangeNoBit) {
   for (const bool with : {false, true}) {
     const Grid grid(a, a, a);
     Incompressible flow(grid, all_of(BoundaryKind::wall), fluid_of(1.2, 1.5e-5));
-    flow.initialise(swirl, [](const Vec3&) { return 0.0; }, 0.0);
+    flow.initialise(
+        swirl, [](const Vec3&) { return 0.0; }, 0.0);
     const std::vector<Body> grains = cloud(100, Vec3(0.012, 0.012, 0.012), 0.3e-3, 5);
     UnresolvedCoupling coupling(grid, air({kWalls, kWalls, kWalls}));
     FluidFraction f(grid);

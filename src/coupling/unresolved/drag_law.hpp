@@ -72,11 +72,10 @@ inline double rong(const Surroundings& s) {
 /// V_p 18 mu e F / d^2, F = e (F0 + F3 Re / 2).
 inline double koch_hill(const Surroundings& s) {
   const double e = s.fraction, p = 1 - e;
-  const double f0 = p <= 0 ? 1
-                    : p < 0.4
-                        ? (1 + 3 * std::sqrt(p / 2) + 135.0 / 64 * p * std::log(p) + 16.14 * p) /
-                              (1 + 0.681 * p - 8.48 * p * p + 8.16 * p * p * p)
-                        : 10 * p / (e * e * e);
+  const double f0 = p <= 0    ? 1
+                    : p < 0.4 ? (1 + 3 * std::sqrt(p / 2) + 135.0 / 64 * p * std::log(p) + 16.14 * p) /
+                                    (1 + 0.681 * p - 8.48 * p * p + 8.16 * p * p * p)
+                              : 10 * p / (e * e * e);
   const double f3 = 0.0673 + 0.212 * p + 0.0232 / std::pow(e, 5);
   const double f = e * (f0 + 0.5 * f3 * s.reynolds());
   return s.volume() * 18 * s.dynamic_viscosity() * e * f / (s.diameter * s.diameter);
@@ -86,8 +85,7 @@ inline double koch_hill(const Surroundings& s) {
 inline double gidaspow(const Surroundings& s) {
   const double e = s.fraction, p = 1 - e, d = s.diameter;
   if (e < 0.8)  // beta of the volume over its solids
-    return s.volume() *
-           (150 * p * s.dynamic_viscosity() / (e * d * d) + 1.75 * s.density * s.slip / d);
+    return s.volume() * (150 * p * s.dynamic_viscosity() / (e * d * d) + 1.75 * s.density * s.slip / d);
   const double re = s.reynolds();
   const double drag = re > 1000 ? 0.44 * re : 24 * (1 + 0.15 * std::pow(re, 0.687));  // C_D Re
   return s.volume() * 0.75 * drag * s.dynamic_viscosity() * std::pow(e, -2.65) / (d * d);

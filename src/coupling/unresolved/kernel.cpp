@@ -28,15 +28,14 @@ AxisWeights axis_weights(const Axis& axis, double x, double h, const std::array<
   w.first = first;
   w.count = last - first + 1;
   if (w.count > AxisWeights::kMost)
-    throw InputError(
-        fmt::format("a grain spreads over {} cells of {:.3g} mm: at most {}; coarser cells, a smaller "
-                    "coupling.kernel_width, or the grain as a [[body]]",
-                    w.count, 1e3 * axis.width[static_cast<std::size_t>(axis.cell_at(x))],
-                    AxisWeights::kMost));
+    throw InputError(fmt::format(
+        "a grain spreads over {} cells of {:.3g} mm: at most {}; coarser cells, a smaller "
+        "coupling.kernel_width, or the grain as a [[body]]",
+        w.count, 1e3 * axis.width[static_cast<std::size_t>(axis.cell_at(x))], AxisWeights::kMost));
   const auto add = [&](double centre) {
     for (int n = 0; n < w.count; ++n)
-      w.weight[static_cast<std::size_t>(n)] += kernel_below((face(first + n + 1) - centre) / h) -
-                                               kernel_below((face(first + n) - centre) / h);
+      w.weight[static_cast<std::size_t>(n)] +=
+          kernel_below((face(first + n + 1) - centre) / h) - kernel_below((face(first + n) - centre) / h);
   };
   add(x);
   if (beyond[0] == Beyond::mirror && x - h < low) add(2 * low - x);

@@ -6,8 +6,8 @@
 namespace ejecta {
 
 /// What a grain whose drag is spread over a Gaussian of standard deviation sigma sees of the motion that this
-/// drag makes, averaged with the same Gaussian, over the drag: s/kg. From the steady solution of the equations
-/// of Oseen with a drag of other grains in them (Brinkman 1949),
+/// drag makes, averaged with the same Gaussian, over the drag: s/kg. From the steady solution of the
+/// equations of Oseen with a drag of other grains in them (Brinkman 1949),
 ///
 ///   u/f = (2 pi)^-3 integral of exp(-k^2 sigma^2) (1 - c^2) / (mu k^2 + rho D + i rho U k c) d3k
 ///
@@ -18,9 +18,6 @@ inline double own_wake(double sigma, double slip, double density, double viscosi
   const double inertia = 0.75 * slip * sigma / viscosity, others = 2 * drag * sigma * sigma / viscosity;
   return 1 / (6 * std::pow(std::numbers::pi, 1.5) * density * viscosity * sigma * (1 + inertia + others));
 }
-
-/// Volume over which such a Gaussian counts itself, m3: the inverse of the integral of its square.
-inline double own_volume(double sigma) { return 8 * std::pow(std::numbers::pi, 1.5) * sigma * sigma * sigma; }
 
 /// Beyond half of the slip the wake is not a correction any more.
 inline constexpr double kMostWake = 0.5;

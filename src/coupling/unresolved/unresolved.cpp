@@ -95,15 +95,23 @@ void UnresolvedCoupling::note_room(const CutCells& cut) {
 void UnresolvedCoupling::place(const Body& grain, double diameter, Place& out) const {
   const double width = setup_.kernel_width * diameter;
   double inside = 1, spread = 0;
+  out.density = 1;
   for (int d = 0; d < 3; ++d) {
     const Axis& axis = grid_.axis(d);
     const double h = kernel_half_width(axis, grain.position[d], width),
                  cell = axis.width[static_cast<std::size_t>(axis.cell_at(grain.position[d]))];
     out.axis[d] = axis_weights(axis, grain.position[d], h, setup_.beyond[static_cast<std::size_t>(d)]);
     spread += (h * h / 7 + cell * cell / 12) / 3;  // variance of the kernel and of a cell
-    double sum = 0;
-    for (int n = 0; n < out.axis[d].count; ++n) sum += out.axis[d].weight[static_cast<std::size_t>(n)];
+    double sum = 0, squares = 0;
+    for (int n = 0; n < out.axis[d].count; ++n) {
+      const double w = out.axis[d].weight[static_cast<std::size_t>(n)];
+      sum += w;
+      squares += w * w *
+                 inverse_widths_[static_cast<std::size_t>(d)]
+                                [static_cast<std::size_t>(wrapped(out.axis[d].first + n, d))];
+    }
     inside *= sum;
+    out.density *= squares;
   }
   out.scale = inside > 0 ? 1 : 0;
   out.spread = std::sqrt(spread);
@@ -170,7 +178,8 @@ void UnresolvedCoupling::scatter(const std::array<FieldView, kN>& to, const Valu
     for (const double y : inverse_widths_[1]) inverse_area.push_back(y * inverse_widths_[2][p]);
     for (int j = 0; j < ny; ++j)
       for (int i = 0; i < nx; ++i) {
-        double inverse = inverse_widths_[0][static_cast<std::size_t>(i)] * inverse_area[static_cast<std::size_t>(j)];
+        double inverse =
+            inverse_widths_[0][static_cast<std::size_t>(i)] * inverse_area[static_cast<std::size_t>(j)];
         if (bodies_) inverse = room_(i, j, k) > 0 ? inverse / double(room_(i, j, k)) : 0;
         const double* cell =
             &sums[static_cast<std::size_t>(j) * static_cast<std::size_t>(nx) + static_cast<std::size_t>(i)];
@@ -198,12 +207,12 @@ void UnresolvedCoupling::map(std::span<const Body> grains, const std::vector<cha
   });
   list_planes();
   std::swap(f.solids_before, f.solids);
-  scatter<1>({f.solids.view()},
-             [&](std::size_t n) { return std::array{volumes_[n]}; });
+  scatter<1>({f.solids.view()}, [&](std::size_t n) { return std::array{volumes_[n]}; });
   if (!mapped_) f.solids_before = f.solids;  // they are there from the beginning
   mapped_ = true;
   for_each_index(count, [&](int g) {
-    find_drag(grains[static_cast<std::size_t>(g)], static_cast<std::size_t>(g), velocity, f.solids.view(), dt);
+    find_drag(grains[static_cast<std::size_t>(g)], static_cast<std::size_t>(g), velocity, f.solids.view(),
+              dt);
   });
   const double inverse = 1 / setup_.fluid_density;
   scatter<4>({f.drag.view(), f.dragging[0].view(), f.dragging[1].view(), f.dragging[2].view()},
@@ -239,9 +248,10 @@ void UnresolvedCoupling::find_drag(const Body& grain, std::size_t n,
     for (int again = 0; wakes && again < 2; ++again) {
       const double sigma = places_[n].spread;
       // Among many a drag law means the mean flow, which all of them make, this one too.
-      const double own = volumes_[n] / own_volume(sigma), others = std::max(1 - out.fraction - own, 0.0);
-      const double wake = own / (own + others) *
-                          own_wake(sigma, s.slip, s.density, s.viscosity, others * beta / (s.density * volumes_[n]));
+      const double own = volumes_[n] * places_[n].density, others = std::max(1 - out.fraction - own, 0.0);
+      const double wake =
+          own / (own + others) *
+          own_wake(sigma, s.slip, s.density, s.viscosity, others * beta / (s.density * volumes_[n]));
       const double larger = 1 / (1 - std::min(beta * wake, kMostWake));
       s.slip = seen * larger;
       beta = setup_.drag(s);
@@ -285,8 +295,7 @@ void UnresolvedCoupling::collect(std::span<const Body> grains, const std::vector
     const GrainDrag& drag = drags_[n];
     drag_force_[n] = drag.coefficient * (u - inside * drag.carried);
     const double displaced = setup_.fluid_density * volumes_[n];
-    const Vec3 by_volume =
-        displaced * (gradients + inside * Vec3(setup_.body_force - setup_.gravity));
+    const Vec3 by_volume = displaced * (gradients + inside * Vec3(setup_.body_force - setup_.gravity));
     loads[n].force = drag_force_[n] + by_volume;
     pushed_[n] = by_volume / grains[n].mass;
   });

@@ -20,18 +20,18 @@ struct UnresolvedSetup {
   Vec3 gravity{0, 0, 0};
   Vec3 body_force{0, 0, 0};  ///< m/s2 that drives the fluid like a gradient of pressure
   std::array<std::array<Beyond, 2>, 3> beyond{};
-  bool acts = true;  ///< on the fluid: what a grain sees is then taken without its own wake
-  double kernel_width = 3.0;                             ///< in grain diameters
+  bool acts = true;           ///< on the fluid: what a grain sees is then taken without its own wake
+  double kernel_width = 3.0;  ///< in grain diameters
   double (*drag)(const drag::Surroundings&) = nullptr;  ///< beta, kg/s; null: none
 };
 
 /// The drag on a grain over a flow step, and where it is mapped.
 struct GrainDrag {
-  double coefficient = 0;       ///< beta of the step, kg/s: the drag is coefficient * (seen - carried)
-  Vec3 carried{0, 0, 0};        ///< m/s, the velocity of the grain that this form stands for
-  double reynolds = 0;          ///< e d |u - v| / nu at its beginning
-  double fraction = 1;          ///< of the fluid around it, e
-  double inside = 0;            ///< part of its kernel that lies in the box
+  double coefficient = 0;  ///< beta of the step, kg/s: the drag is coefficient * (seen - carried)
+  Vec3 carried{0, 0, 0};   ///< m/s, the velocity of the grain that this form stands for
+  double reynolds = 0;     ///< e d |u - v| / nu at its beginning
+  double fraction = 1;     ///< of the fluid around it, e
+  double inside = 0;       ///< part of its kernel that lies in the box
 };
 
 /// Two-way coupling of grains smaller than a cell with the flow (Zhou et al. 2010, model A; paper Eqs 1-3).
@@ -64,6 +64,7 @@ class UnresolvedCoupling {
     AxisWeights axis[3];
     double scale = 0.0;        // of the product of the weights: 1 but near bodies; 0: not there
     bool near_bodies = false;  // room_ counts
+    double density = 0.0;      // 1/m3, of what it leaves in cells, as it sees it
     double spread = 0.0;       // m, standard deviation of where its force acts and its velocity is seen
   };
   void note_room(const CutCells& cut);
@@ -82,9 +83,9 @@ class UnresolvedCoupling {
 
   const Grid& grid_;
   UnresolvedSetup setup_;
-  Field room_;            // part of each cell whose momentum is the fluid's, where there are bodies
-  bool bodies_ = false;   // there are
-  Range3 around_;         // cells that they cut and fill
+  Field room_;           // part of each cell whose momentum is the fluid's, where there are bodies
+  bool bodies_ = false;  // there are
+  Range3 around_;        // cells that they cut and fill
   std::array<std::vector<double>, 3> inverse_widths_;  // of the cells, 1/m
   std::vector<double> diameters_, volumes_;            // of the grains, m, m3
   std::vector<Place> places_;

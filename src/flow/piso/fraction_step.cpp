@@ -59,8 +59,7 @@ void FractionStep::predict_faces(const FluidFraction& f, Real h, ConstFieldView 
   const std::ptrdiff_t s = stride(p, D);
   const Real *solids = f.solids.view().row(j, k), *drag = f.drag.view().row(j, k),
              *dragging = f.dragging[kD].view().row(j, k), *m_row = m.row(j, k), *p_row = p.row(j, k);
-  Real *q_row = q.row(j, k), *c_row = coefficient_[kD].view().row(j, k),
-       *gain = gain_[kD].view().row(j, k);
+  Real *q_row = q.row(j, k), *c_row = coefficient_[kD].view().row(j, k), *gain = gain_[kD].view().row(j, k);
   const Real* below = shares_[kD].below.data();
   for_each_lane(
       0, grid_.nx() + (D == 0), [=](int i) __attribute__((always_inline)) {
@@ -87,8 +86,7 @@ void FractionStep::correct_cells(FluidFraction& f, FieldView u, ConstFieldView p
   const std::ptrdiff_t s = stride(p, D);
   const Real *solids = f.solids.view().row(j, k), *q_row = q.row(j, k), *p_row = p.row(j, k),
              *gain = gain_[kD].view().row(j, k);
-  Real *u_row = u.row(j, k), *seen = f.seen[kD].view().row(j, k),
-       *push = f.push[kD].view().row(j, k);
+  Real *u_row = u.row(j, k), *seen = f.seen[kD].view().row(j, k), *push = f.push[kD].view().row(j, k);
   const Real *below = shares_[kD].below.data(), *low = shares_[kD].low.data(),
              *high = shares_[kD].high.data();
   for_each_lane(
@@ -98,8 +96,8 @@ void FractionStep::correct_cells(FluidFraction& f, FieldView u, ConstFieldView p
         const Real el = fluid_part(wl * solids[i - s] + (Real(1) - wl) * solids[i]),
                    eh = fluid_part(wh * solids[i] + (Real(1) - wh) * solids[i + s]);
         const Real a = low[at], b = high[at];
-        u_row[i] = (u_row[i] + a * (q_row[i] + gain[i]) + b * (q_row[i + s] + gain[i + s])) /
-                   fluid_part(solids[i]);
+        u_row[i] =
+            (u_row[i] + a * (q_row[i] + gain[i]) + b * (q_row[i + s] + gain[i + s])) / fluid_part(solids[i]);
         seen[i] += Real(0.5) * (a * q_row[i] / el + b * q_row[i + s] / eh);
         push[i] -= Real(0.5) * (a * (p_row[i] - p_row[i - s]) * metrics.inv_distance[at] +
                                 b * (p_row[i + s] - p_row[i]) * metrics.inv_distance[at + 1]);
@@ -132,9 +130,11 @@ void FractionStep::imbalance(const FluidFraction& f, double dt, const std::array
   divergence(grid_, {q[0], q[1], q[2]}, Real(1), out);
   const Metrics m[3] = {grid_.metrics(0), grid_.metrics(1), grid_.metrics(2)};
   const Real inv_dt = static_cast<Real>(1 / dt);
-  for_each_cell(grid_.range(), [=, now = f.solids.view(), before = f.solids_before.view()](int i, int j, int k) {
-    out(i, j, k) -= (now(i, j, k) - before(i, j, k)) * inv_dt * m[0].volume[i] * m[1].volume[j] * m[2].volume[k];
-  });
+  for_each_cell(
+      grid_.range(), [=, now = f.solids.view(), before = f.solids_before.view()](int i, int j, int k) {
+        out(i, j, k) -=
+            (now(i, j, k) - before(i, j, k)) * inv_dt * m[0].volume[i] * m[1].volume[j] * m[2].volume[k];
+      });
 }
 
 void FractionStep::project(FluidFraction& f, double h, double dt, const std::array<FieldView, 3>& u,
@@ -168,10 +168,9 @@ void FractionStep::project(FluidFraction& f, double h, double dt, const std::arr
         const double flow = double(area(d, i, j, k)) * double(v(i, j, k));
         return flow * flow;
       });
-  constexpr double kTolerance =
-      std::max(16 * double(std::numeric_limits<Real>::epsilon()), 1e-10);
-  iterations_ = poisson_.solve({coefficient_[0].view(), coefficient_[1].view(), coefficient_[2].view()}, cells,
-                               rhs, kTolerance * std::sqrt(scale), q, change);
+  constexpr double kTolerance = std::max(16 * double(std::numeric_limits<Real>::epsilon()), 1e-10);
+  iterations_ = poisson_.solve({coefficient_[0].view(), coefficient_[1].view(), coefficient_[2].view()},
+                               cells, rhs, kTolerance * std::sqrt(scale), q, change);
   boundaries_.fill_pressure(change, q, false);
   for_each_index(grid_.nz() + 1, [&](int k) {
     for (int j = 0; j <= grid_.ny(); ++j)
@@ -180,7 +179,7 @@ void FractionStep::project(FluidFraction& f, double h, double dt, const std::arr
         const std::size_t e = static_cast<std::size_t>(d);
         const std::ptrdiff_t s = stride(change, d);
         const Real *c = coefficient_[e].view().row(j, k), *f_row = change.row(j, k);
-        Real *q_row = q[e].row(j, k);
+        Real* q_row = q[e].row(j, k);
         const Metrics metrics = m[d];
         for_each_lane(0, grid_.nx() + (d == 0), [=](int i) {
           const int at = d == 0 ? i : d == 1 ? j : k;
@@ -201,13 +200,14 @@ void FractionStep::project(FluidFraction& f, double h, double dt, const std::arr
   // Along an axis of one cell there are no faces.
   for (std::size_t d = 0; d < 3; ++d) {
     if (grid_.active(int(d))) continue;
-    for_each_cell(grid_.range(), [=, to = u[d], seen = f.seen[d].view(), solids = f.solids.view(),
-                                  drag = f.drag.view(), dragging = f.dragging[d].view()](int i, int j, int k) {
-      const Real v = (to(i, j, k) + step * dragging(i, j, k)) /
-                     (fluid_part(solids(i, j, k)) + step * drag(i, j, k));
-      to(i, j, k) = v;
-      seen(i, j, k) += Real(0.5) * v;
-    });
+    for_each_cell(
+        grid_.range(), [=, to = u[d], seen = f.seen[d].view(), solids = f.solids.view(), drag = f.drag.view(),
+                        dragging = f.dragging[d].view()](int i, int j, int k) {
+          const Real v =
+              (to(i, j, k) + step * dragging(i, j, k)) / (fluid_part(solids(i, j, k)) + step * drag(i, j, k));
+          to(i, j, k) = v;
+          seen(i, j, k) += Real(0.5) * v;
+        });
   }
 }
 

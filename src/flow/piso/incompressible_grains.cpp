@@ -44,8 +44,8 @@ void Incompressible::advance(double time, double dt, CutCells& cut, FluidFractio
 ///   stage 1:  e1 u1 = e0 u + dt (R(u) - e1 grad p1) + dt (S - D u1)            R = -div(q u) + div tau + ...
 ///   stage 2:  e1 u' = (e0 u + e1 u1 + dt (R(u1) - e1 grad p2) + dt (S - D u')) / 2
 ///
-/// with div q = -(e1 - e0) / dt in both: drag as by backward Euler, the rest by Heun's method. The pressure of
-/// the step is the mean of p1 and p2. Stresses act on the grains' part of a cell through the grains.
+/// with div q = -(e1 - e0) / dt in both: drag as by backward Euler, the rest by Heun's method. The pressure
+/// of the step is the mean of p1 and p2. Stresses act on the grains' part of a cell through the grains.
 void Incompressible::advance_through_grains(double time, double dt, CutCells& cut, FluidFraction& f) {
   const Real h = static_cast<Real>(dt);
   convection_ = -1.0;
@@ -59,11 +59,12 @@ void Incompressible::advance_through_grains(double time, double dt, CutCells& cu
   const ConstFieldView now = f.solids.view(), before = f.solids_before.view();
   const auto gather = [&](Real stage, std::size_t c, ConstFieldView old, ConstFieldView u, Real a, Real b) {
     const Real acceleration = static_cast<Real>(setup_.acceleration[int(c)]);
-    for_each_cell(grid_.range(), [=, m = u_star_[c].view(), friction = friction_[c].view()](int i, int j, int k) {
-      const Real s = now(i, j, k);
-      m(i, j, k) += a * (Real(1) - before(i, j, k)) * old(i, j, k) + b * (Real(1) - s) * u(i, j, k) +
-                    stage * ((Real(1) - s) * acceleration - s * friction(i, j, k));
-    });
+    for_each_cell(
+        grid_.range(), [=, m = u_star_[c].view(), friction = friction_[c].view()](int i, int j, int k) {
+          const Real s = now(i, j, k);
+          m(i, j, k) += a * (Real(1) - before(i, j, k)) * old(i, j, k) + b * (Real(1) - s) * u(i, j, k) +
+                        stage * ((Real(1) - s) * acceleration - s * friction(i, j, k));
+        });
   };
   {
     BoundaryFlow through = predict_increment(time, dt);
@@ -137,8 +138,8 @@ BoundaryFlow Incompressible::predict_increment(double time, double h) {
   return through;
 }
 
-/// div tau / rho of the velocity at the beginning of the step, as nu times the Laplacian: whatever it is, what
-/// the grains get the fluid loses.
+/// div tau / rho of the velocity at the beginning of the step, as nu times the Laplacian: whatever it is,
+/// what the grains get the fluid loses.
 void Incompressible::find_friction() {
   if (friction_[0].size() == 0)
     for (Field& field : friction_) field = grid_.make_field();
@@ -149,7 +150,7 @@ void Incompressible::find_friction() {
   for (std::size_t c = 0; c < 3; ++c) {
     const ConstFieldView u = u_[c].view();
     for_each_cell(
-        grid_.range(), [=, out = friction_[c].view()](int i, int j, int k) __attribute__((always_inline)) {
+        grid_.range(), [ =, out = friction_[c].view() ](int i, int j, int k) __attribute__((always_inline)) {
           const Real* at = u.row(j, k) + i;
           Real sum = 0;
           const auto add = [&](const Metrics& d, int n, std::ptrdiff_t s) __attribute__((always_inline)) {
@@ -164,8 +165,8 @@ void Incompressible::find_friction() {
   }
 }
 
-/// Drag over a stage of h, implicit in the velocity of the cells: for grains that are too few for the pressure
-/// to notice.
+/// Drag over a stage of h, implicit in the velocity of the cells: for grains that are too few for the
+/// pressure to notice.
 void Incompressible::drag_cells(double h) {
   const Real step = static_cast<Real>(h);
   for (std::size_t c = 0; c < 3; ++c)
@@ -190,9 +191,10 @@ void Incompressible::find_results(FluidFraction& f) {
       });
     if (!grid_.active(d)) continue;
     const std::ptrdiff_t s = stride(p_.view(), d);
-    for_each_cell(grid_.range(), [=, to = f.push[c].view(), p = p_.view(), metrics = m[d]](int i, int j, int k) {
-      to(i, j, k) = -cell_gradient(p.row(j, k) + i, s, metrics, d == 0 ? i : d == 1 ? j : k);
-    });
+    for_each_cell(grid_.range(),
+                  [=, to = f.push[c].view(), p = p_.view(), metrics = m[d]](int i, int j, int k) {
+                    to(i, j, k) = -cell_gradient(p.row(j, k) + i, s, metrics, d == 0 ? i : d == 1 ? j : k);
+                  });
   }
 }
 
@@ -211,9 +213,7 @@ void Incompressible::book_grains(const FluidFraction& f, double dt) {
         reduce_sum(grid_.range(), [=, seen = f.seen[c].view(), dragging = f.dragging[c].view(),
                                    push = f.push[c].view()](int i, int j, int k) {
           double rate = double(drag(i, j, k)) * double(seen(i, j, k)) - double(dragging(i, j, k));
-          if (room)
-            rate += double(solids(i, j, k)) *
-                    (double(push(i, j, k)) + acceleration);
+          if (room) rate += double(solids(i, j, k)) * (double(push(i, j, k)) + acceleration);
           return rate * double(part(i, j, k)) * double(m[0].volume[i]) * double(m[1].volume[j]) *
                  double(m[2].volume[k]);
         });

@@ -157,11 +157,12 @@ Vec3 Incompressible::momentum() const {
   Vec3 sum;
   if (fraction_) {
     for (int c = 0; c < 3; ++c)
-      sum[c] = setup_.density * reduce_sum(grid_.range(), [=, u = u_[c].view(), solids = fraction_->solids.view()](
-                                                              int i, int j, int k) {
-                 return (1.0 - double(solids(i, j, k))) * double(u(i, j, k)) * double(m[0].volume[i]) *
-                        double(m[1].volume[j]) * double(m[2].volume[k]);
-               });
+      sum[c] = setup_.density *
+               reduce_sum(grid_.range(),
+                          [=, u = u_[c].view(), solids = fraction_->solids.view()](int i, int j, int k) {
+                            return (1.0 - double(solids(i, j, k))) * double(u(i, j, k)) *
+                                   double(m[0].volume[i]) * double(m[1].volume[j]) * double(m[2].volume[k]);
+                          });
     return sum;
   }
   for (int c = 0; c < 3; ++c)

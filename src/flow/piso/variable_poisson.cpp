@@ -1,4 +1,4 @@
-#include "flow/poisson/variable.hpp"
+#include "flow/piso/variable_poisson.hpp"
 
 #include <cmath>
 
@@ -31,9 +31,10 @@ void VariablePoisson::apply(const std::array<ConstFieldView, 3>& faces, ConstFie
         const Real here = f(i, j, k);
         Real sum = 0;
         if (x)
-          sum += face_area<0>(m, i + 1, j, k) * m[0].inv_distance[i + 1] * faces[0](i + 1, j, k) *
-                     (f(i + 1, j, k) - here) -
-                 face_area<0>(m, i, j, k) * m[0].inv_distance[i] * faces[0](i, j, k) * (here - f(i - 1, j, k));
+          sum +=
+              face_area<0>(m, i + 1, j, k) * m[0].inv_distance[i + 1] * faces[0](i + 1, j, k) *
+                  (f(i + 1, j, k) - here) -
+              face_area<0>(m, i, j, k) * m[0].inv_distance[i] * faces[0](i, j, k) * (here - f(i - 1, j, k));
         if (y)
           sum += face_area<1>(m, i, j, k) *
                  (m[1].inv_distance[j + 1] * faces[1](i, j + 1, k) * (f(i, j + 1, k) - here) -
@@ -50,9 +51,8 @@ void VariablePoisson::apply(const std::array<ConstFieldView, 3>& faces, ConstFie
 void VariablePoisson::precondition(ConstFieldView cells) {
   const FieldView z = z_.view();
   const ConstFieldView r = residual_.view();
-  for_each_cell(grid_.range(), [=](int i, int j, int k) {
-    z(i, j, k) = r(i, j, k) / std::sqrt(cells(i, j, k));
-  });
+  for_each_cell(grid_.range(),
+                [=](int i, int j, int k) { z(i, j, k) = r(i, j, k) / std::sqrt(cells(i, j, k)); });
   constant_.solve(z, z);
   for_each_cell(grid_.range(), [=](int i, int j, int k) { z(i, j, k) /= std::sqrt(cells(i, j, k)); });
 }
@@ -75,8 +75,7 @@ int VariablePoisson::solve(const std::array<ConstFieldView, 3>& faces, ConstFiel
     const double now = -inner_product(grid_, r, z);
     if (!(now > 0)) return n;
     const Real beta = n == 0 ? Real(0) : static_cast<Real>(now / before);
-    for_each_cell(grid_.range(),
-                  [=](int i, int j, int k) { d(i, j, k) = z(i, j, k) + beta * d(i, j, k); });
+    for_each_cell(grid_.range(), [=](int i, int j, int k) { d(i, j, k) = z(i, j, k) + beta * d(i, j, k); });
     boundaries_.fill_pressure(d, q, false);
     apply(faces, d, image);
     const double curvature = -inner_product(grid_, d, image);
