@@ -14,7 +14,7 @@
 #include "case/write.hpp"
 #include "output/output_file.hpp"
 #include "output/report.hpp"
-#include "simulation/sorter_result.hpp"
+#include "simulation/sorter_run.hpp"
 #include "study/study.hpp"
 
 namespace ejecta {
@@ -23,56 +23,7 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-constexpr std::int64_t kStretch = 4;    ///< cells that are computed in one piece
-constexpr std::int64_t kStretches = 8;  ///< pieces between two checkpoints
-constexpr double kTellEvery = 2.0;      ///< s
-
-/// The directory of a sorter: state.json says how far it is, and of what.
-class SortDirectory {
- public:
-  SortDirectory(fs::path path, const std::string& input, bool force) : path_(std::move(path)), input_(input) {
-    const bool mine = fs::exists(state());
-    if (!mine && holds_anything())
-      throw InputError(fmt::format("{} is there and is no directory of a sorter\n  expected: another --out",
-                                   path_.string()));
-    if (mine && force) fs::remove_all(path_);
-    fs::create_directories(path_);
-    if (!fs::exists(state())) write({});
-  }
-  /// Throws InputError where the case was another.
-  SorterState read(std::size_t kinds) const {
-    Json json;
-    try {
-      json = Json::parse(output::read_file(state()));
-    } catch (const nlohmann::json::exception&) {
-      throw InputError(fmt::format("{} is damaged\n  expected: --force, to start anew", state().string()));
-    }
-    if (json.value("input_sha256", "") != input_)
-      throw InputError(
-          fmt::format("{} holds the results of another case, or of this one before it was changed\n"
-                      "  expected: --force, to start anew, or another --out",
-                      path_.string()));
-    return sorter_state(json, kinds);
-  }
-  void write(const SorterState& s) const {
-    Json json{{"input_sha256", input_}};
-    json.update(json_of(s));
-    output::write_file(state(), json.dump());
-  }
-  fs::path file(const char* name) const { return path_ / name; }
-
- private:
-  fs::path state() const { return path_ / "state.json"; }
-  /// But for what a kill left of the first state.
-  bool holds_anything() const {
-    std::error_code none;
-    for (const auto& entry : fs::directory_iterator(path_, none))
-      if (!entry.path().filename().string().starts_with("state.json")) return true;
-    return false;
-  }
-  fs::path path_;
-  std::string input_;
-};
+constexpr double kTellEvery = 2.0;  ///< s
 
 /// Says every few seconds how far a sorter is.
 class SortTeller {
@@ -95,7 +46,7 @@ class SortTeller {
 };
 
 void write_results(const Case& c, const Sorter& sorter, const SorterState& state,
-                   const SortDirectory& directory, const Json& corrected) {
+                   const SorterDirectory& directory, const Json& corrected) {
   Json result = sorter_result(c, sorter, state);
   if (!corrected.empty()) {
     if (corrected.contains("recovery")) result["tier"] = "fast, corrected by resolved shots";
@@ -123,21 +74,16 @@ int sort_case(const Case& c, const SortOptions& o) {
                     c.path));
   if (o.threads > 0) set_thread_count(o.threads);
   const fs::path path = o.out.empty() ? fs::path(c.path).stem().string() + ".sort" : o.out;
-  const SortDirectory directory(path, study_header("sort", c).at("input_sha256"), o.force);
+  const SorterDirectory directory(path, study_header("sort", c).at("input_sha256"), o.force);
   SorterState state = directory.read(c.classes.size());
   const Note note = [&](const std::string& line) {
     if (!o.quiet) fmt::print(stderr, "{}\n", line);
   };
   const auto source = make_jet_source(c, note);
   const Sorter sorter(c, fast_ejection(c, *source));
-  const Feed& feed = sorter.feed();
-  const std::int64_t cells =
-      feed.cells_of_file() > 0
-          ? feed.cells_of_file()
-          : std::max<std::int64_t>(
-                1, static_cast<std::int64_t>(std::ceil(c.sorter.particles / feed.mean_count())));
+  const std::int64_t cells = cells_of_sorter(c, sorter);
   note(fmt::format("{}: {:.3g} m of belt, {} thread{} -> {}{}", c.path,
-                   static_cast<double>(cells) * feed.cell_length(), thread_count(),
+                   static_cast<double>(cells) * sorter.feed().cell_length(), thread_count(),
                    thread_count() == 1 ? "" : "s", path.string(),
                    state.cells > 0 ? fmt::format(", from {:.0f} %", 100.0 * static_cast<double>(state.cells) /
                                                                         static_cast<double>(cells))
@@ -145,42 +91,24 @@ int sort_case(const Case& c, const SortOptions& o) {
   if (!fs::exists(directory.file("view.json"))) {
     output::write_file(directory.file("case.toml"), write_case(c));
     output::write_file(directory.file("view.json"),
-                       sorter_view(c, sorter.sort(0, std::min(cells, kStretch), c.sorter.shown)).dump());
+                       sorter_view(c, sorter.sort(0, std::min(cells, kSorterPiece), c.sorter.shown)).dump());
   }
   SignalWatch signals;
   SortTeller teller(cells, o.quiet);
-  while (state.cells < cells) {
-    if (signals.stop_requested()) {
-      fmt::print(stderr, "stopped; go on with the same command\n");
-      return exit_stopped;
-    }
-    const double began = wall_seconds();
-    const std::int64_t until = std::min(cells, state.cells + kStretch * kStretches);
-    const auto pieces = static_cast<int>((until - state.cells + kStretch - 1) / kStretch);
-    std::vector<SortedStretch> sorted(static_cast<std::size_t>(pieces));
-    std::vector<std::string> failed(static_cast<std::size_t>(pieces));
-    for_each_index_dynamic(pieces, [&](int n) {
-      const std::int64_t first = state.cells + n * kStretch;
-      try {
-        sorted[static_cast<std::size_t>(n)] = sorter.sort(first, std::min(first + kStretch, until));
-      } catch (const InputError& e) {
-        failed[static_cast<std::size_t>(n)] = e.what();
-      }
-    });
-    for (const std::string& why : failed)
-      if (!why.empty()) throw InputError(why);
-    for (const SortedStretch& piece : sorted)
-      for (const Tally& cell : piece.cells) state.products.add(cell, c.classes);
-    state.cells = until;
-    state.wall_time += wall_seconds() - began;
-    directory.write(state);
-    teller.tell(state.cells, state.cells == cells);
+  const auto stop = [&] { return signals.stop_requested(); };
+  const auto keep = [&](const SorterState& now) {
+    directory.write(now);
+    teller.tell(now.cells, now.cells == cells);
+  };
+  if (!run_sorter(c, sorter, cells, state, keep, stop)) {
+    fmt::print(stderr, "stopped; go on with the same command\n");
+    return exit_stopped;
   }
   Json corrected = Json::object();
   if (o.resolved > 0) {
     note(fmt::format("{} shots as runs -> {}", o.resolved, directory.file("resolved").string()));
-    corrected = resolve_shots(c, sorter, state, directory.file("resolved"),
-                              {.shots = o.resolved, .stop = [&] { return signals.stop_requested(); }});
+    corrected =
+        resolve_shots(c, sorter, state, directory.file("resolved"), {.shots = o.resolved, .stop = stop});
     if (corrected.is_null()) {
       fmt::print(stderr, "stopped; go on with the same command\n");
       return exit_stopped;

@@ -76,6 +76,13 @@ inline void for_each_lane(int i0, int i1, const Kernel& kernel) {
   }
 }
 
+/// kernel(i) for i in [i0, i1) in SIMD on this thread, and no further: any order, no dependence.
+template <class Kernel>
+inline void for_each_in_lanes(int i0, int i1, const Kernel& kernel) {
+#pragma omp simd
+  for (int i = i0; i < i1; ++i) kernel(i);
+}
+
 /// kernel(i, j, k) for every cell; any order, no dependence between cells. Rows run as in for_each_lane.
 template <class Kernel>
 void for_each_cell(const Range3& r, const Kernel& kernel) {

@@ -20,6 +20,8 @@ inline constexpr int kRegisterBytes = 16;
 #endif
 inline constexpr int kRegisterLanes = kRegisterBytes / static_cast<int>(sizeof(Real));
 using Register = Real __attribute__((vector_size(kRegisterBytes), may_alias));
+/// The same at any address.
+using LooseRegister = Real __attribute__((vector_size(kRegisterBytes), aligned(sizeof(Real)), may_alias));
 
 namespace detail {
 /// Swaps the off-diagonal quarters of every 2 kHalf x 2 kHalf block of the rows a (upper) and b (lower).

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
+#include <utility>
 #include <vector>
 
 #include "base/parallel.hpp"
@@ -84,6 +86,50 @@ Particles belt(int count) {
   });
 }
 
+/// 200 bodies in the waves of a surface of 20,000 triangles of 6 mm, or on a plane.
+Particles on_floor(bool waves, ShapeKind kind) {
+  constexpr int kCells = 100, kSide = 14;
+  constexpr double kWidth = 0.6;  // m
+  Particles p = empty_scene({}, Vec3(0, 0, 0));
+  const auto height = [&](double x, double y) {
+    return waves ? 5e-3 * (std::sin(40 * x) + std::sin(40 * y)) : 0.0;
+  };
+  Wall floor;
+  if (waves) {
+    TriangleMesh mesh;
+    for (int j = 0; j <= kCells; ++j)
+      for (int i = 0; i <= kCells; ++i) {
+        const double x = kWidth * (double(i) / kCells - 0.5), y = kWidth * (double(j) / kCells - 0.5);
+        mesh.vertices.push_back(Vec3(x, y, height(x, y)));
+      }
+    const auto at = [](int i, int j) { return j * (kCells + 1) + i; };
+    for (int j = 0; j < kCells; ++j)
+      for (int i = 0; i < kCells; ++i) {
+        mesh.triangles.push_back({at(i, j), at(i + 1, j), at(i + 1, j + 1)});
+        mesh.triangles.push_back({at(i, j), at(i + 1, j + 1), at(i, j + 1)});
+      }
+    floor.name = "waves";
+    floor.is_plane = false;
+    floor.surface = std::make_shared<Surface>(mesh);
+  } else {
+    WallSpec wall;
+    wall.name = "plane";
+    floor = make_wall(wall, p.materials(), "");
+  }
+  p.add(std::move(floor));
+  for (int n = 0; n < 200; ++n) {
+    BodySpec body;
+    body.shape = kind;
+    body.diameter = 2 * kRadius;
+    body.size = Vec3::Constant(2 * kRadius);
+    const double pitch = 0.9 * kWidth / kSide, x = pitch * (n % kSide + 0.5) - 0.45 * kWidth,
+                 y = pitch * (n / kSide % kSide + 0.5) - 0.45 * kWidth;
+    body.position = Vec3(x, y, height(x, y) + (2 + 3 * (n / (kSide * kSide))) * kRadius);
+    p.add(make_body(body, p.materials(), ""));
+  }
+  return p;
+}
+
 /// Lets the bodies move, then tells one line.
 void measure(const char* name, Particles p, int settle, int steps, const Note& tell) {
   p.advance(settle * kStep);
@@ -105,7 +151,7 @@ void measure(const char* name, Particles p, int settle, int steps, const Note& t
   const double parts[] = {t.listing - before.listing, t.balls - before.balls, t.solids - before.solids,
                           t.motion - before.motion};
   const double all = parts[0] + parts[1] + parts[2] + parts[3];
-  tell(fmt::format("{:<34}{:>9.3f}{:>10.2f}{:>10.0f}{:>9.0f}{:>8.0f}{:>8.0f}{:>8.0f}{:>8.0f}{:>8.1f}", name,
+  tell(fmt::format("{:<38}{:>9.3f}{:>10.2f}{:>10.0f}{:>9.0f}{:>8.0f}{:>8.0f}{:>8.0f}{:>8.0f}{:>8.1f}", name,
                    step * 1e3, count / step * 1e-6 / thread_count(), contacts,
                    step * thread_count() / std::max(contacts, 1.0) * 1e9, 100 * parts[1] / all,
                    100 * parts[2] / all, 100 * parts[3] / all, 100 * parts[0] / all,
@@ -116,12 +162,18 @@ void measure(const char* name, Particles p, int settle, int steps, const Note& t
 
 void bench_dem(bool only_settled, const Note& tell) {
   tell(fmt::format("\nbodies that touch ({} threads; median of ten parts)", thread_count()));
-  tell(fmt::format("{:<34}{:>9}{:>10}{:>10}{:>9}{:>8}{:>8}{:>8}{:>8}{:>8}", "", "ms/step", "M p-s/s/c",
+  tell(fmt::format("{:<38}{:>9}{:>10}{:>10}{:>9}{:>8}{:>8}{:>8}{:>8}{:>8}", "", "ms/step", "M p-s/s/c",
                    "contacts", "ns/cont.", "balls %", "solids", "motion", "lists", "steps/l."));
   measure("10,000 spheres settled", spheres(10000, 2.1), 4000, 2000, tell);
   if (only_settled) return;
   measure("10,000 spheres settling", spheres(10000, 2.1), 0, 4000, tell);
   measure("2,000 polyhedra on a belt", belt(2000), 800, 400, tell);
+  for (const bool waves : {false, true}) {
+    const char* floor = waves ? "20,000 triangles in waves" : "a plane";
+    measure(fmt::format("200 balls on {}", floor).c_str(), on_floor(waves, ShapeKind::sphere), 2000, 2000,
+            tell);
+    measure(fmt::format("200 boxes on {}", floor).c_str(), on_floor(waves, ShapeKind::box), 1000, 500, tell);
+  }
   for (const int count : {1000, 10000, 30000, 100000, 300000})
     measure(fmt::format("{} spheres in contact", count).c_str(), spheres(count, 2.0), 200, 200, tell);
   tell("M p-s/s/c: million particle-steps a second and core; steps/l.: steps between lists of neighbours");

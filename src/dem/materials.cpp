@@ -7,6 +7,7 @@
 
 #include "base/error.hpp"
 #include "dem/contact_damping.hpp"
+#include "dem/time_step.hpp"
 
 namespace ejecta {
 namespace {
@@ -67,6 +68,18 @@ Materials::Materials(const Case& config)
       c.rolling = rolling;
       pairs_.push_back(c);
     }
+  for (int a = 0; a < count(); ++a) {
+    double& most = swiftest_.emplace_back(0.0);
+    if (!with_law(law_, [](auto law) { return law.kIsElastic; })) continue;
+    for (int b = 0; b < count(); ++b) {  // of a dent with root(radius x overlap) = 1 and a mass of 1
+      Contact<double> dent;
+      dent.overlap = dent.radius = dent.mass = 1.0;
+      const NormalSpring<double> s = HertzMindlin::spring(dent, pair(a, b));
+      const double dashpot = dashpot_of(s, dent, pair(a, b));
+      // The dashpot goes with the root of the stiffness, so its square is in proportion too.
+      most = std::max(most, asked_rate_squared(1.5 * s.secant, dashpot));
+    }
+  }
   for (const MaterialPairSpec& p : config.material_pairs) {
     index(p.a);
     index(p.b);

@@ -20,6 +20,10 @@ class Materials {
   const PairConstants<double>& pair(int a, int b) const {
     return pairs_[static_cast<std::size_t>(a * count() + b)];
   }
+  /// What a body of this material asks of the time step at a contact, 1/(s2) kg/m: times the root of (radius
+  /// x overlap) over mass it is time_step.hpp's asked_rate_squared. 0 where the law knows no elastic
+  /// stiffness.
+  double swiftest(int material) const { return swiftest_[static_cast<std::size_t>(material)]; }
   ContactLaw law() const { return law_; }
   bool allow_tension() const { return allow_tension_; }
   bool any_rolling() const;
@@ -27,6 +31,7 @@ class Materials {
  private:
   std::vector<MaterialSpec> specs_;
   std::vector<PairConstants<double>> pairs_;
+  std::vector<double> swiftest_;
   ContactLaw law_;
   bool allow_tension_;
 };

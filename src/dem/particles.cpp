@@ -17,6 +17,8 @@ namespace {
 
 constexpr int kBodyBlock = 512;   // bodies one thread moves at a time; sums are kept by block
 constexpr double kSlowest = 0.1;  // m/s, impact speed the step is made for at least
+constexpr double kMostPieces = 64.0;
+constexpr double kSeveralBalls = 2.0;  // contacts a ball has of which only the deepest is looked at
 
 void note_peak(ContactPeaks& p, double overlap, double force_squared, double dt) {
   if (!(force_squared > 0)) return;
@@ -60,15 +62,28 @@ void Particles::advance(double dt, std::span<const Load> loads) {
   const int steps = std::max(1, static_cast<int>(std::ceil(dt / stable_dt() * (1 - 1e-12))));
   const double start = time_, step = dt / steps;
   pack_spheres();
-  add_work(0.5 * step);
-  move_bodies(step, loads, false, true);
-  for (int n = 1; n <= steps; ++n) {
-    find_contacts(step);
-    time_ = start + dt * n / steps;
-    move_bodies(step, loads, true, n < steps);
-    add_work(n < steps ? step : 0.5 * step);
+  int left = pieces_of(step);
+  double now = step / left;
+  add_work(0.5 * now);
+  move_bodies(0.0, now, loads);
+  for (int n = 1; now > 0;) {
+    find_contacts(now);
+    time_ = start + dt * n / steps - --left * now;
+    double next = now;
+    if (left == 0) {
+      left = pieces_of(step);
+      next = n++ < steps ? step / left : 0.0;
+    }
+    move_bodies(now, next, loads);
+    add_work(0.5 * (now + next));
+    now = next;
   }
   unpack_spheres();
+}
+
+int Particles::pieces_of(double step) const {
+  if (contact_.time_step) return 1;
+  return static_cast<int>(std::clamp(std::ceil(step * asked_rate_), 1.0, kMostPieces));
 }
 
 void Particles::release(std::size_t n) {
@@ -120,9 +135,10 @@ Vec3 Particles::torque_on(std::size_t n, std::span<const Load> loads) const {
   return loads.empty() ? torque_[n] : Vec3(torque_[n] + loads[n].torque);
 }
 
-void Particles::move_bodies(double dt, std::span<const Load> loads, bool kick, bool drift) {
+void Particles::move_bodies(double kicked, double drifted, std::span<const Load> loads) {
   ScopedTimer timer(times_.motion);
   const int count = static_cast<int>(bodies_.size());
+  const bool kick = kicked > 0, drift = drifted > 0;
   const Vec4 gravity = vec4(gravity_);
   block_moved_.resize(static_cast<std::size_t>(block_count(count, kBodyBlock)));
   block_work_.resize(block_moved_.size());
@@ -151,21 +167,23 @@ void Particles::move_bodies(double dt, std::span<const Load> loads, bool kick, b
         }
         if (kick) {
           const double half = balls_.gather(parts_.first_ball(i), row.radius, push.force, push.torque);
-          note_peak(peaks_[n], 2 * half, dot(push.force, push.force), dt);
-          by_contacts += kick_sphere(s, push, dt);
+          note_peak(peaks_[n], 2 * half, dot(push.force, push.force), kicked);
+          by_contacts += kick_sphere(s, push, kicked);
+          const double swiftest = materials_.swiftest(static_cast<int>(row.material)) * s.inverse_mass();
+          work.asked = std::max(work.asked, swiftest * swiftest * row.radius * half);
           if (!loads.empty())
             work.from_outside += loads[n].force.dot(vec3(s.velocity)) +
                                  loads[n].torque.dot(s.inverse_inertia() * vec3(s.momentum));
         }
         if (drift) {
-          spheres.note(drift_sphere(s, row, push, dt));
+          spheres.note(drift_sphere(s, row, push, drifted));
         } else {
           force_[n] = vec3(push.force);
           torque_[n] = vec3(push.torque);
         }
       } else {
-        if (kick) kick_body(i, loads, dt, work);
-        if (drift) others.note(drift_body(i, loads, dt, work));
+        if (kick) kick_body(i, loads, kicked, work);
+        if (drift) others.note(drift_body(i, loads, drifted, work));
       }
     }
     work.into_contacts -= (by_contacts[0] + by_contacts[1]) + by_contacts[2];
@@ -181,10 +199,13 @@ void Particles::move_bodies(double dt, std::span<const Load> loads, bool kick, b
   // change of kinetic energy.
   const double by_walls = balls_.wall_power() + solids_.wall_power();
   power_ = {by_walls, by_walls};
+  double asked = 0.0;
   for (const Work& work : block_work_) {
     power_.into_contacts += work.into_contacts;
     power_.from_outside += work.from_outside;
+    asked = std::max(asked, work.asked);
   }
+  asked_rate_ = std::max(std::sqrt(kSeveralBalls * std::sqrt(2.0 * asked)), solids_.asked_rate());
 }
 
 /// Returns how far a part of the body may have moved since the listing, m.
@@ -289,7 +310,9 @@ void Particles::note_friction() {
   if (planes_.size() == walls_.size()) return;  // no surfaces
   for (const SolidPair& p : solids_.pairs()) {
     const ContactHistory& h = p.history;
-    if (p.b.kind == PartKind::wall_triangle && h.touched())
+    if (p.b.kind != PartKind::wall_triangle) continue;
+    const Surface& surface = *walls_[static_cast<std::size_t>(p.b.index)].surface;
+    if (h.touched())
       friction_.push_back({p.a.index,
                            p.b.index,
                            Vec3(h.normal.x, h.normal.y, h.normal.z),
@@ -297,6 +320,8 @@ void Particles::note_friction() {
                            false,
                            0.0,
                            h.dent});
+    else if (h.side < 0 && !surface.two_sided())  // on its way through from behind, which leaves no dent
+      friction_.push_back({.ball = p.a.index, .wall = p.b.index, .dent = 0.0});
   }
   for (int n = 0; n < balls_.pair_count(); ++n) {
     const auto [ball, plane] = balls_.pair(n);
@@ -336,11 +361,13 @@ void Particles::collect_solids() {
 void Particles::kick_body(int index, std::span<const Load> loads, double dt, Work& work) {
   const std::size_t n = static_cast<std::size_t>(index);
   Body& b = bodies_[n];
-  double deepest = 0.0;
+  double deepest = 0.0, dents = 0.0;  // m; sum of root(radius x overlap / 2)
   for (int ball = parts_.first_ball(index); ball < parts_.first_ball(index + 1); ++ball) {
     Vec4 force{}, torque{};
     const BallRow& row = parts_.row(ball);
-    deepest = std::max(deepest, balls_.gather(ball, row.radius, force, torque));
+    const double half = balls_.gather(ball, row.radius, force, torque);
+    deepest = std::max(deepest, half);
+    dents += std::sqrt(row.radius * half);
     force_[n] += vec3(force);
     torque_[n] += vec3(torque) + (row.centre() - b.position).cross(vec3(force));
   }
@@ -348,6 +375,8 @@ void Particles::kick_body(int index, std::span<const Load> loads, double dt, Wor
   if (b.motion == Motion::fixed || launches_[n].waiting || presence_[n] != Presence::here) return;
   const bool pushed = b.motion == Motion::free;
   if (pushed) {
+    const double swiftest = materials_.swiftest(b.material) * dents / b.mass;
+    work.asked = std::max(work.asked, swiftest * swiftest);
     b.velocity += 0.5 * dt * acceleration(n, loads);
     momentum_[n] += 0.5 * dt * torque_on(n, loads);
     b.angular_velocity = angular_velocity(b.orientation, momentum_[n], b.inertia);

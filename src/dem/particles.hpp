@@ -57,7 +57,8 @@ class Particles {
  public:
   Particles(const Vec3& gravity, Materials materials, const ContactSpec& contact, const Domain& domain = {});
 
-  /// Moves all bodies over dt (s) in equal sub-steps no longer than stable_dt(); gravity acts, loads[i] acts
+  /// Moves all bodies over dt (s) in equal sub-steps no longer than stable_dt(), which contacts that turn out
+  /// stiffer than those it is made for divide further (a pebble under a rock); gravity acts, loads[i] acts
   /// on body i and is held constant (empty: none). Bodies enter and leave at its beginning. Throws
   /// DivergedError naming a body whose motion is no number.
   void advance(double dt, std::span<const Load> loads = {});
@@ -98,12 +99,16 @@ class Particles {
   void restore(std::span<const double> state);
 
  private:
-  /// The half of a kick that ends a sub-step, and the half and the drift that begin the next.
-  void move_bodies(double dt, std::span<const Load> loads, bool kick, bool drift);
+  /// The half of a kick that ends a sub-step of `kicked` s, and the half and the drift that begin the next,
+  /// of `drifted` s; 0: there is none.
+  void move_bodies(double kicked, double drifted, std::span<const Load> loads);
+  /// Into how many a sub-step has to be divided for the contacts as they were at its beginning.
+  int pieces_of(double step) const;
   void collect_solids();
   struct Work {
     double into_contacts = 0.0, from_outside = 0.0;  // W
     double driven = 0.0;                             // J, what speeds prescribed bodies up
+    double asked = 0.0;                              // 1/s4, fourth power of asked_rate_
   };
   double drift_body(int index, std::span<const Load> loads, double dt, Work& work);
   void kick_body(int index, std::span<const Load> loads, double dt, Work& work);
@@ -169,7 +174,8 @@ class Particles {
   };
   std::vector<Farthest<double>> block_moved_;
   std::vector<Work> block_work_;
-  Work power_;  // at the last sub-step
+  Work power_;               // at the last sub-step
+  double asked_rate_ = 0.0;  // sub-steps a second that its contacts asked for
   Parts parts_;
   CandidateSearch search_;
   mutable CandidateSearch look_;  // of single bodies

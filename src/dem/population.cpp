@@ -241,7 +241,8 @@ std::vector<double> Particles::state() const {
                         contact_work_,
                         outer_work_,
                         power_.into_contacts,
-                        power_.from_outside};
+                        power_.from_outside,
+                        asked_rate_};
   for (std::size_t n = 0; n < bodies_.size(); ++n) {
     const Body& b = bodies_[n];
     append(s, b.position);
@@ -268,6 +269,7 @@ void Particles::restore(std::span<const double> s) {
   outer_work_ = in.number();
   power_.into_contacts = in.number();
   power_.from_outside = in.number();
+  asked_rate_ = in.number();
   for (std::size_t n = 0; n < bodies_.size(); ++n) {
     Body& b = bodies_[n];
     b.position = in.vec3();

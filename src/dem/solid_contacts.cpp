@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "dem/blocks.hpp"
+#include "dem/time_step.hpp"
 
 namespace ejecta {
 namespace {
@@ -14,6 +15,7 @@ constexpr double kSameHollow = 0.906;  // cosine of 25 degrees: normals of one h
 constexpr double kLeastDepth = 0.5;    // energy of a flat contact over force x mean thickness: a face; to
 constexpr double kLeastFactor = 1e-9;  // nothing, but for ratios of forces and energies
 constexpr double kMostDepth = 0.75;    // that of a corner
+constexpr double kSeveral = 2.0;       // a body turns as it is pushed, and others push it too
 
 Triple<double> triple(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
 Vec3 vec(const Triple<double>& t) { return {t.x, t.y, t.z}; }
@@ -218,7 +220,7 @@ void SolidContacts::choose(const World& world, int begin, int end) {
 /// the work does not suffice for that, all forces are less by one factor. So a contact that came about
 /// without work, as that of a body that was born in another or slid over an edge, begins without force, and
 /// then is as stiff as any. What is stored beyond the most is lost.
-void SolidContacts::apply_laws(const World& world, int begin, int end, double dt) {
+double SolidContacts::apply_laws(const World& world, int begin, int end, double dt) {
   const auto pair = [&](int n) -> SolidPair& {
     return pairs_[static_cast<std::size_t>(order_[static_cast<std::size_t>(n)])];
   };
@@ -229,6 +231,7 @@ void SolidContacts::apply_laws(const World& world, int begin, int end, double dt
   double stored = 0.0, power = 0.0;               // before
   double least = 0.0, most = 0.0, parting = 0.0;  // J, J, W
   double error = 0.0;                             // of the rule
+  double stiffness = 0.0, damping = 0.0;          // of all together, over mass: 1/s2, 1/s
   bool whole = true;
   for (int n = begin; n < end; ++n) {
     SolidPair& p = pair(n);
@@ -261,12 +264,13 @@ void SolidContacts::apply_laws(const World& world, int begin, int end, double dt
     least += m.least;
     most += m.most;
     parting += force * dot(m.contact.velocity, m.contact.normal);
-    const double stiffness = t.thickness > 0 ? force / t.thickness : 1.5 * m.spring.secant;
+    const double square = (t.thickness > 0 ? force / t.thickness : 1.5 * m.spring.secant) / m.contact.mass;
     const bool gradient = !(t.thickness > 0) || p.b.kind == PartKind::wall_plane;
     whole = whole && gradient && p.history.touched() && p.history.dent == 1.0;
-    error = std::max(error, stiffness * dt * dt / m.contact.mass);
+    error = std::max(error, square * dt * dt);
+    stiffness += square;
   }
-  if (!(least > 0)) return;
+  if (!(least > 0)) return 0.0;
   // With the factor f: f^2 least = stored now = had - f half.
   const double slack = dt * (error * std::abs(power) + (whole ? 0.5 * std::abs(power + parting) : 0.0));
   const double had = std::max(0.0, stored + 0.5 * dt * power + slack), half = 0.5 * dt * parting;
@@ -289,9 +293,12 @@ void SolidContacts::apply_laws(const World& world, int begin, int end, double dt
     SolidPair& p = *touching[n];
     double all = 0.0;
     for (const SolidPair* q : touching) all += q->stored * std::max(0.0, q->touch.normal.dot(p.touch.normal));
-    meetings[n].contact.share = p.stored / all;
-    apply_law(p, meetings[n], world.constants(meetings[n]), world.materials.allow_tension(), dt);
+    Meeting& m = meetings[n];
+    m.contact.share = p.stored / all;
+    damping += dashpot_of(m.spring, m.contact, world.constants(m)) / m.contact.mass;
+    apply_law(p, m, world.constants(m), world.materials.allow_tension(), dt);
   }
+  return asked_rate_squared(kSeveral * stiffness, kSeveral * damping);
 }
 
 void SolidContacts::compute(const Parts& parts, std::span<const Body> bodies, std::span<const Wall> walls,
@@ -312,10 +319,15 @@ void SolidContacts::compute(const Parts& parts, std::span<const Body> bodies, st
     for (int n = begin; n < end; ++n)
       choose(world, runs_[2 * static_cast<std::size_t>(n)], runs_[2 * static_cast<std::size_t>(n) + 1]);
   });
+  asked_.assign(first_.size() - 1, 0.0);
   for_each_block(static_cast<int>(first_.size()) - 1, kPairBlock, [&](int, int begin, int end) {
     for (int n = begin; n < end; ++n)
-      apply_laws(world, first_[static_cast<std::size_t>(n)], first_[static_cast<std::size_t>(n) + 1], dt);
+      asked_[static_cast<std::size_t>(n)] =
+          apply_laws(world, first_[static_cast<std::size_t>(n)], first_[static_cast<std::size_t>(n) + 1], dt);
   });
+  asked_rate_ = 0.0;
+  for (const double asked : asked_) asked_rate_ = std::max(asked_rate_, asked);
+  asked_rate_ = std::sqrt(asked_rate_);
 }
 
 double SolidContacts::elastic() const {

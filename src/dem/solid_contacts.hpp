@@ -99,6 +99,7 @@ class SolidContacts {
   std::span<const SolidPair> pairs() const { return pairs_; }
   double elastic() const;
   double wall_power() const;
+  double asked_rate() const { return asked_rate_; }  ///< sub-steps a second, by the last compute()
   void save(std::vector<double>& out) const;
   void load(StateReader& in, int bodies);
   /// Keeps only pairs for which `rename` returns true after changing them.
@@ -112,10 +113,13 @@ class SolidContacts {
   struct World;
   void arrange();
   void choose(const World& world, int begin, int end);
-  void apply_laws(const World& world, int begin, int end, double dt);
+  /// Returns what these contacts ask of the time step, asked_rate_squared.
+  double apply_laws(const World& world, int begin, int end, double dt);
 
   std::vector<SolidPair> pairs_;
-  std::vector<int> runs_;           // where those of a ball with one body or wall begin and end, in turn
+  std::vector<int> runs_;  // where those of a ball with one body or wall begin and end, in turn
+  double asked_rate_ = 0.0;
+  std::vector<double> asked_;       // squares of it, of each two bodies
   std::vector<int> order_, first_;  // pairs by the two bodies (all walls are one), and where each two begin
 };
 

@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <span>
 #include <string>
 
@@ -15,5 +16,16 @@ double rayleigh_time(double radius, double density, double youngs_modulus, doubl
 /// `velocity` and, with flat faces, a quarter of the period on an elastic foundation
 /// (whose force sets in with a kink). s.
 double contact_time(const Body& body, const Materials& materials, double velocity);
+
+/// How far a contact may come in a sub-step before that is divided: turn of its oscillation (rad; a step of
+/// stable_dt() has 0.16 in the impact it is made for, central differences are stable up to 2) and decay by
+/// its dashpot (velocities extrapolated to the whole step are stable up to 1).
+inline constexpr double kMostTurn = 0.3, kMostDecay = 0.7;
+
+/// Sub-steps a second that a contact asks for, squared: `stiffness` over mass (1/s2), `damping`: dashpot over
+/// mass (1/s).
+inline double asked_rate_squared(double stiffness, double damping) {
+  return std::max(stiffness / (kMostTurn * kMostTurn), damping * damping / (kMostDecay * kMostDecay));
+}
 
 }  // namespace ejecta

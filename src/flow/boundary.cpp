@@ -24,6 +24,21 @@ Index index_on(int d, int a, int b, int along) {
 
 }  // namespace
 
+void Boundaries::Plane::resize() {
+  const std::size_t size = static_cast<std::size_t>(na) * static_cast<std::size_t>(nb);
+  for (auto* v : {&velocity[0], &velocity[1], &velocity[2], &k, &dissipation, &pressure}) v->resize(size);
+  prescribed.resize(size);
+}
+
+void Boundaries::Plane::set(int a, int b, const BoundaryState& state) {
+  const std::size_t n = index(a, b);
+  for (std::size_t c = 0; c < 3; ++c) velocity[c][n] = state.velocity[c];
+  k[n] = state.k;
+  dissipation[n] = state.dissipation;
+  pressure[n] = state.pressure;
+  prescribed[n] = state.prescribed;
+}
+
 Boundaries::Boundaries(const Grid& grid, std::array<Boundary, 6> faces)
     : grid_(grid), faces_(std::move(faces)) {
   for (int face = 0; face < 6; ++face) {
@@ -31,7 +46,7 @@ Boundaries::Boundaries(const Grid& grid, std::array<Boundary, 6> faces)
     Plane& p = planes_[static_cast<std::size_t>(face)];
     p.na = grid.n(first_across(d));
     p.nb = grid.n(second_across(d));
-    p.states.resize(static_cast<std::size_t>(p.na) * static_cast<std::size_t>(p.nb));
+    p.resize();
   }
 }
 
@@ -71,8 +86,7 @@ void Boundaries::update(double time) {
         x[d] = face % 2 ? axis.face.back() : axis.face.front();
         x[da] = grid_.axis(da).centre[static_cast<std::size_t>(a)];
         x[db] = grid_.axis(db).centre[static_cast<std::size_t>(b)];
-        p.states[static_cast<std::size_t>(b) * static_cast<std::size_t>(p.na) + static_cast<std::size_t>(a)] =
-            boundary.state(x, time);
+        p.set(a, b, boundary.state(x, time));
       }
     });
     p.fresh = true;
@@ -98,33 +112,59 @@ Boundaries::Side Boundaries::side(const FieldView& f, int face) const {
   return s;
 }
 
-/// ghost(field, layer, a, b, cell, inner) -> value of a ghost; a and b clamped to the face, `cell` the offset
-/// of the boundary cell, `inner` the value as far inside as the ghost is outside (periodic: on the other
-/// side).
+/// ghost(field, layer, a, b, cell, inner) -> value of a ghost; `field` an integral_constant, a and b clamped
+/// to the face, `cell` the offset of the boundary cell, `inner` the value as far inside as the ghost is
+/// outside (periodic: on the other side). Ghosts of a row are computed in any order.
 template <std::size_t kN, class Ghost>
 void Boundaries::fill_side(const std::array<FieldView, kN>& fields, const Side& s, bool periodic,
                            const Ghost& ghost) const {
   const int n = grid_.n(s.d);
+  const auto fill_row = [&](auto field, int layer, int b, std::ptrdiff_t start) {
+    Real* origin = fields[field].origin + start;
+    const std::ptrdiff_t out = (layer + 1) * s.outward, in = -(periodic ? n - 1 - layer : layer) * s.outward;
+    const auto set = [ =, &ghost ](int a, int clamped, std::ptrdiff_t cell) __attribute__((always_inline)) {
+      origin[cell + out] = ghost(field, layer, clamped, b, start + cell, origin[cell + in]);
+    };
+    for (int a = -s.ghosts_a; a < 0; ++a) set(a, 0, a * s.step_a);
+    if (s.step_a == 1) {
+      for_each_in_lanes(
+          0, s.na, [&](int a) __attribute__((always_inline)) { set(a, a, a); });
+    } else {
+      for (int a = 0; a < s.na; ++a) set(a, a, a * s.step_a);
+    }
+    for (int a = s.na; a < s.na + s.ghosts_a; ++a) set(a, s.na - 1, a * s.step_a);
+  };
   for_each_index(s.nb + 2 * s.ghosts_b, [&](int row) {
     const int b = std::clamp(row - s.ghosts_b, 0, s.nb - 1);
     const std::ptrdiff_t start = s.cell(0, row - s.ghosts_b);
-    for (std::size_t c = 0; c < kN; ++c)
-      for (int layer = 0; layer < kGhosts; ++layer) {
-        Real* origin = fields[c].origin;
-        const std::ptrdiff_t out = (layer + 1) * s.outward,
-                             in = -(periodic ? n - 1 - layer : layer) * s.outward;
-        for (int a = -s.ghosts_a; a < s.na + s.ghosts_a; ++a) {
-          const std::ptrdiff_t cell = start + a * s.step_a;
-          origin[cell + out] = ghost(c, layer, std::clamp(a, 0, s.na - 1), b, cell, origin[cell + in]);
-        }
+    for (int layer = 0; layer < kGhosts; ++layer) [&]<std::size_t... field>(std::index_sequence<field...>) {
+        (fill_row(std::integral_constant<std::size_t, field>{}, layer, b, start), ...);
       }
+    (std::make_index_sequence<kN>{});
   });
 }
 
 namespace {
 
+/// go(std::true_type) or go(std::false_type): what holds for a whole face is decided outside its loops.
+template <class Go>
+void decide(bool yes, const Go& go) {
+  if (yes) go(std::true_type{});
+  else go(std::false_type{});
+}
+
 /// A copy of the value inside.
-constexpr auto kCopy = [](std::size_t, int, int, int, std::ptrdiff_t, Real inner) { return inner; };
+constexpr auto kCopy = [](auto, int, int, int, std::ptrdiff_t, Real inner) { return inner; };
+
+/// What leaves the box through face cell (a, b), m/s.
+auto out_through(const std::array<FieldView, 3>& q, const auto& s) {
+  return [
+    face = q[static_cast<std::size_t>(s.d)].origin + s.face + s.first, step_a = s.step_a, step_b = s.step_b,
+    sign = s.upper ? Real(1) : Real(-1)
+  ](int a, int b) __attribute__((always_inline)) {
+    return sign * face[a * step_a + b * step_b];
+  };
+}
 
 }  // namespace
 
@@ -138,29 +178,40 @@ void Boundaries::fill_velocity(std::array<FieldView, 3> u, const std::array<Fiel
     if (!grid_.active(face / 2)) continue;
     const Side s = side(u[0], face);
     const std::size_t d = static_cast<std::size_t>(s.d);
-    const Real* through_face = q[d].origin + s.face;
+    const Plane& plane = planes_[static_cast<std::size_t>(face)];
+    const std::array<const Real*, 3> given{plane.velocity[0].data(), plane.velocity[1].data(),
+                                           plane.velocity[2].data()};
+    const std::ptrdiff_t na = plane.na;
     switch (kind(face)) {
       case BoundaryKind::periodic:
         fill_side(u, s, true, kCopy);
         break;
       case BoundaryKind::mirror:
-        fill_side(u, s, false, [d](std::size_t c, int, int, int, std::ptrdiff_t, Real inner) {
-          return c == d ? -inner : inner;
-        });
+        fill_side(u, s, false,
+                  [d](auto c, int, int, int, std::ptrdiff_t, Real inner) { return c == d ? -inner : inner; });
         break;
       case BoundaryKind::open:
         // Fluid that comes in through an open boundary brings no tangential momentum.
-        fill_side(u, s, false, [=, this](std::size_t c, int, int a, int b, std::ptrdiff_t, Real inner) {
-          if (prescribed(face, a, b)) return Real(2) * at(face, a, b).velocity[c] - inner;
-          const Real through = through_face[s.cell(a, b)];
-          const bool enters = s.upper ? through < 0 : through > 0;
-          return !enters ? inner : c == d ? Real(2) * through - inner : -inner;
+        decide(faces_[static_cast<std::size_t>(face)].discs, [&](auto discs) {
+          const char* prescribed = plane.prescribed.data();
+          fill_side(
+              u, s, false,
+              [ =, out = out_through(q, s) ](auto c, int, int a, int b, std::ptrdiff_t, Real inner)
+                  __attribute__((always_inline)) {
+                    const Real through = out(a, b);
+                    const Real in = c == d ? (s.upper ? Real(2) : Real(-2)) * through - inner : -inner;
+                    const Real ghost = through < 0 ? in : inner;
+                    if constexpr (!discs) return ghost;
+                    else return prescribed[b * na + a] ? Real(2) * given[c][b * na + a] - inner : ghost;
+                  });
         });
         break;
       default:
-        fill_side(u, s, false, [=, this](std::size_t c, int, int a, int b, std::ptrdiff_t, Real inner) {
-          return Real(2) * at(face, a, b).velocity[c] - inner;
-        });
+        fill_side(
+            u, s,
+            false, [=](auto c, int, int a, int b, std::ptrdiff_t, Real inner) __attribute__((always_inline)) {
+              return Real(2) * given[c][b * na + a] - inner;
+            });
     }
   }
 }
@@ -187,19 +238,29 @@ void Boundaries::fill_pressure(FieldView p, const std::array<FieldView, 3>& q, b
     };
     if (boundary.kind == BoundaryKind::open) {
       const Real dynamic = total && boundary.total_pressure ? Real(0.5) : Real(0);
-      const Real* through_face = q[static_cast<std::size_t>(s.d)].origin + s.face;
-      fill_side<1>({p}, s, false,
-                   [=, this](std::size_t, int layer, int a, int b, std::ptrdiff_t cell_at, Real inner) {
-                     if (prescribed(face, a, b)) return extrapolated(layer, cell_at);
-                     const Real fixed = total ? at(face, a, b).pressure : Real(0);
-                     const Real through = through_face[s.cell(a, b)];
-                     const bool enters = s.upper ? through < 0 : through > 0;
-                     return Real(2) * (fixed - (enters ? dynamic * through * through : Real(0))) - inner;
-                   });
-    } else {
-      fill_side<1>({p}, s, false, [=](std::size_t, int layer, int, int, std::ptrdiff_t cell_at, Real) {
-        return extrapolated(layer, cell_at);
+      const Real given = total ? Real(1) : Real(0);
+      const Plane& plane = planes_[static_cast<std::size_t>(face)];
+      decide(boundary.discs, [&](auto discs) {
+        fill_side<1>(
+            {p}, s, false,
+            [
+              =, out = out_through(q, s), pressure = plane.pressure.data(),
+              prescribed = plane.prescribed.data(), na = std::ptrdiff_t(plane.na)
+            ](auto, int layer, int a, int b, std::ptrdiff_t cell_at, Real inner)
+                __attribute__((always_inline)) {
+                  const Real through = out(a, b);
+                  const Real entering = through < 0 ? dynamic * through * through : Real(0);
+                  const Real ghost = Real(2) * (given * pressure[b * na + a] - entering) - inner;
+                  if constexpr (!discs) return ghost;
+                  else return prescribed[b * na + a] ? extrapolated(layer, cell_at) : ghost;
+                });
       });
+    } else {
+      fill_side<1>(
+          {p}, s,
+          false, [=](auto, int layer, int, int, std::ptrdiff_t cell_at, Real) __attribute__((always_inline)) {
+            return extrapolated(layer, cell_at);
+          });
     }
   }
 }
@@ -214,13 +275,16 @@ void Boundaries::fill_turbulence(FieldView k, FieldView dissipation,
       fill_side(both, s, kind(face) == BoundaryKind::periodic, kCopy);
       continue;
     }
-    const Real* through_face = q[static_cast<std::size_t>(s.d)].origin + s.face;
-    fill_side(both, s, false, [=, this](std::size_t c, int, int a, int b, std::ptrdiff_t, Real inner) {
-      const Real through = through_face[s.cell(a, b)];
-      const BoundaryState& state = at(face, a, b);
-      const bool enters = s.upper ? through < 0 : through > 0;
-      return !enters || state.k <= 0 ? inner : c == 0 ? state.k : state.dissipation;
-    });
+    const Plane& plane = planes_[static_cast<std::size_t>(face)];
+    fill_side(
+        both, s, false, [
+          out = out_through(q, s), energy = plane.k.data(), dissipated = plane.dissipation.data(),
+          na = std::ptrdiff_t(plane.na)
+        ](auto c, int, int a, int b, std::ptrdiff_t, Real inner) __attribute__((always_inline)) {
+          const Real given = energy[b * na + a];
+          const Real in = c == 0 ? given : dissipated[b * na + a];
+          return out(a, b) < 0 && given > 0 ? in : inner;
+        });
   }
 }
 

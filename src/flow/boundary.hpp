@@ -39,7 +39,8 @@ class Boundaries {
   bool open() const;  ///< at least one boundary fixes the pressure
   /// Whether face cell (a, b) of an open face has a velocity of its own.
   bool prescribed(int face, int a, int b) const {
-    return faces_[static_cast<std::size_t>(face)].discs && at(face, a, b).prescribed;
+    const Plane& plane = planes_[static_cast<std::size_t>(face)];
+    return faces_[static_cast<std::size_t>(face)].discs && plane.prescribed[plane.index(a, b)];
   }
   /// The same of a face of the grid; false inside the box.
   bool prescribed_on(int d, const std::array<int, 3>& face) const;
@@ -62,10 +63,14 @@ class Boundaries {
 
   /// State on face cell (a, b) of a face normal to d; a, b index the other two directions in the order of
   /// storage: x -> (y, z), y -> (x, z), z -> (x, y).
-  const BoundaryState& at(int face, int a, int b) const {
+  BoundaryState at(int face, int a, int b) const {
     const Plane& p = planes_[static_cast<std::size_t>(face)];
-    return p
-        .states[static_cast<std::size_t>(b) * static_cast<std::size_t>(p.na) + static_cast<std::size_t>(a)];
+    const std::size_t n = p.index(a, b);
+    return {{p.velocity[0][n], p.velocity[1][n], p.velocity[2][n]},
+            p.k[n],
+            p.dissipation[n],
+            p.pressure[n],
+            p.prescribed[n] != 0};
   }
 
   void fill_velocity(std::array<FieldView, 3> u, const std::array<FieldView, 3>& q) const;
@@ -85,10 +90,18 @@ class Boundaries {
   void prescribe_face_velocity(std::array<FieldView, 3> q) const;
 
  private:
+  /// The states of one boundary, each of their values side by side in memory.
   struct Plane {
     int na = 0, nb = 0;
-    std::vector<BoundaryState> states;
+    std::array<std::vector<Real>, 3> velocity;
+    std::vector<Real> k, dissipation, pressure;
+    std::vector<char> prescribed;
     bool fresh = false;
+    std::size_t index(int a, int b) const {
+      return static_cast<std::size_t>(b) * static_cast<std::size_t>(na) + static_cast<std::size_t>(a);
+    }
+    void resize();
+    void set(int a, int b, const BoundaryState& state);
   };
   /// What is needed to walk over one face.
   struct Side {

@@ -10,10 +10,6 @@
 namespace ejecta {
 
 using GridMetrics = std::array<Metrics, 3>;
-inline GridMetrics metrics_of(const Grid& grid) {
-  return {grid.metrics(0), grid.metrics(1), grid.metrics(2)};
-}
-
 /// Area of the lower d-face of cell `at`, m2.
 inline Real face_area_of(const GridMetrics& m, int d, const std::array<int, 3>& at) {
   const std::size_t s = static_cast<std::size_t>(d), a = (s + 1) % 3, b = (s + 2) % 3;
@@ -23,8 +19,7 @@ inline Real face_area_of(const GridMetrics& m, int d, const std::array<int, 3>& 
 /// visit(cell, d, face, neighbour, sign, open part, whole area) for the open faces of one cell; sign: +1
 /// where the face is its upper one.
 template <class Visit>
-void for_each_open_face_of(const Grid& grid, const GridMetrics& metrics, const CutCells& cut,
-                           const CutCell& c, const Visit& visit) {
+void for_each_open_face_of(const Grid& grid, const CutCells& cut, const CutCell& c, const Visit& visit) {
   for (int side = 0; side < 6; ++side) {
     const int d = side / 2, up = side % 2;
     if (!grid.active(d)) continue;
@@ -33,18 +28,16 @@ void for_each_open_face_of(const Grid& grid, const GridMetrics& metrics, const C
     beyond[static_cast<std::size_t>(d)] += up ? 1 : -1;
     const Real open = Real(1) - cut.closed[static_cast<std::size_t>(d)](face[0], face[1], face[2]);
     if (open > Real(0))
-      visit(c, d, face, beyond, up ? Real(1) : Real(-1), open, face_area_of(metrics, d, face));
+      visit(c, d, face, beyond, up ? Real(1) : Real(-1), open, face_area_of(grid.metrics(), d, face));
   }
 }
 
 /// The same for a carrier and the cells it carries.
 template <class Visit>
 void for_each_open_face(const Grid& grid, const CutCells& cut, const CutCell& carrier, const Visit& visit) {
-  const GridMetrics metrics = metrics_of(grid);
   for (int n = carrier.first_member; n < carrier.first_member + carrier.members; ++n)
-    for_each_open_face_of(grid, metrics, cut,
-                          cut.cells[static_cast<std::size_t>(cut.members[static_cast<std::size_t>(n)])],
-                          visit);
+    for_each_open_face_of(
+        grid, cut, cut.cells[static_cast<std::size_t>(cut.members[static_cast<std::size_t>(n)])], visit);
 }
 
 /// visit(cell, its carrier) for the small cells, one after the other.

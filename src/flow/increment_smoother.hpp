@@ -2,6 +2,7 @@
 #include <array>
 #include <vector>
 
+#include "base/simd.hpp"
 #include "flow/cut_cells.hpp"
 #include "flow/poisson/operator_1d.hpp"
 #include "grid/grid.hpp"
@@ -40,18 +41,26 @@ class IncrementSmoother {
   struct Factors {
     std::vector<Real> inverse, below, above;
   };
-  /// A line of cells along an axis, by its indices along the other two in ascending order.
-  struct Line {
-    int a, b;
+  /// Lines along one axis run in blocks, side by side in lanes: along x kRegisterLanes rows of a piece, else
+  /// kRealLanes cells of a row. Those of which solids cut a line have LU factors of their own,
+  /// [block][cell][lane]: forward s_i = scale_i r_i + carry_i s_i-1, backward s_i += above_i s_i+1.
+  struct CutBlocks {
+    std::vector<int> number;  ///< of the factors of every block; -1: no solid cuts it
+    std::vector<int> block;   ///< of every number
+    std::vector<Real> scale, carry, above;
   };
-  /// Calls smooth() for everything, but puts what it did to the lines [first, last) of an axis right.
-  template <class Smooth>
-  void with_cut_lines(FieldView delta, int axis, int first, int last, const Base* base,
-                      const Smooth& smooth) const;
-  void solve_line(int axis, Line line, Real* values) const;
-  void list_lines(const CutCells& cut);
+  int block_of(int axis, int i, int j, int k) const;
+  void list_blocks(const CutCells& cut);
+  template <int kAxis>
+  void factorise(int number, ConstFieldView carried, ConstFieldView closed);
+  template <int kAxis>
+  void factorise_all(const CutCells& cut, ConstFieldView carried);
 
-  void smooth_x(FieldView delta, int first, int last) const;
+  template <class Plain, class Cut>
+  void smooth_row(int axis, const int* numbers, int m, const Plain& plain, const Cut& cut) const;
+  void smooth_up(int axis, const int* numbers, int m, Real* row, const Real* before) const;
+  void smooth_down(int axis, const int* numbers, int m, Real* row, const Real* after) const;
+  void smooth_x(FieldView delta, int piece) const;
   void smooth_y(FieldView delta, int k) const;
   void smooth_z_and_add(FieldView delta, int j0, int j1, const Base& base) const;
 
@@ -60,11 +69,9 @@ class IncrementSmoother {
   std::array<Operator1D, 3> operator_;
   std::array<Factors, 3> factors_;
   double nu_dt_ = 0;
-  ConstFieldView carried_;
-  std::array<ConstFieldView, 3> closed_;
-  std::array<std::vector<Line>, 3> lines_;      // that solids cut, by axis; sorted by b, in z by b = j
-  std::array<std::vector<int>, 3> first_line_;  // of every b, and their number
-  std::vector<char> marked_;                    // scratch
+  std::array<CutBlocks, 3> cut_;
+  // Planes that one thread smooths along x and y at once, and blocks: of rows in them, of cells in a row
+  int planes_together_, row_blocks_, cell_blocks_;
 };
 
 }  // namespace ejecta

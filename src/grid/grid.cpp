@@ -16,8 +16,15 @@ Grid::Grid(Axis x, Axis y, Axis z, bool axisymmetric)
   if (axisymmetric && axis_[0].face.front() < 0.0)
     throw InputError(
         fmt::format("an axisymmetric grid starts at x = r >= 0, not {} m", axis_[0].face.front()));
-  for (std::size_t d = 0; d < 3; ++d)
-    lines_[d] = make_lines(axis_[d], axisymmetric && d == 0, axisymmetric && d == 1);
+  for (std::size_t d = 0; d < 3; ++d) {
+    lines_[d] =
+        std::make_shared<const Lines>(make_lines(axis_[d], axisymmetric && d == 0, axisymmetric && d == 1));
+    const Lines& l = *lines_[d];
+    const auto from = [](const std::vector<Real>& line) { return line.data() + kGhosts; };
+    metrics_[d] = {from(l.width),    from(l.centre),     from(l.face),      from(l.volume),
+                   from(l.area),     from(l.inv_volume), from(l.inv_width), from(l.inv_distance),
+                   from(l.inv_span), from(l.weight)};
+  }
 }
 
 Grid::Lines Grid::make_lines(const Axis& a, bool radial, bool collapsed) {
@@ -66,14 +73,6 @@ Grid::Lines Grid::make_lines(const Axis& a, bool radial, bool collapsed) {
                      &l.inv_distance, &l.inv_span, &l.weight})
     line->insert(line->end(), kRealLanes, line->back());  // kernels run over whole registers (for_each_lane)
   return l;
-}
-
-Metrics Grid::metrics(int d) const {
-  const Lines& l = lines_[static_cast<std::size_t>(d)];
-  return {l.width.data() + kGhosts,     l.centre.data() + kGhosts,       l.face.data() + kGhosts,
-          l.volume.data() + kGhosts,    l.area.data() + kGhosts,         l.inv_volume.data() + kGhosts,
-          l.inv_width.data() + kGhosts, l.inv_distance.data() + kGhosts, l.inv_span.data() + kGhosts,
-          l.weight.data() + kGhosts};
 }
 
 double Grid::volume(int i, int j, int k) const {

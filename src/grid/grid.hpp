@@ -1,5 +1,6 @@
 #pragma once
 #include <array>
+#include <memory>
 #include <vector>
 
 #include "base/real.hpp"
@@ -33,7 +34,8 @@ class Grid {
   Grid(Axis x, Axis y, Axis z, bool axisymmetric = false);
 
   const Axis& axis(int d) const { return axis_[static_cast<std::size_t>(d)]; }
-  Metrics metrics(int d) const;
+  const Metrics& metrics(int d) const { return metrics_[static_cast<std::size_t>(d)]; }
+  const std::array<Metrics, 3>& metrics() const { return metrics_; }
   int nx() const { return axis_[0].n; }
   int ny() const { return axis_[1].n; }
   int nz() const { return axis_[2].n; }
@@ -58,7 +60,8 @@ class Grid {
   };
   static Lines make_lines(const Axis& axis, bool radial, bool collapsed);
   std::array<Axis, 3> axis_;
-  std::array<Lines, 3> lines_;
+  std::array<std::shared_ptr<const Lines>, 3> lines_;  // copies of a grid share them
+  std::array<Metrics, 3> metrics_;                     // into these
   bool axisymmetric_ = false;
 };
 

@@ -16,20 +16,39 @@ namespace {
 
 constexpr double kCoplanar = 1e-9;  // of the size: heights below it are none
 
-__extension__ using Quad = __float128;
+__extension__ using Wide = __int128;
 
-/// Whether d lies above the triangle a, b, c. The hull closes only if such answers agree with each other, so
-/// where doubles cannot tell, more digits do. (A thing of 1e-30 is round-off of 113 bits: on the triangle.)
-bool is_above(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
-  const Vec3 u = b - a, v = c - a, w = d - a;
-  const double volume = u.cross(v).dot(w);
-  const double most = u.cwiseAbs().sum() * v.cwiseAbs().sum() * w.cwiseAbs().sum();
-  if (std::abs(volume) > 1e-14 * most) return volume > 0;
-  const auto minus = [](double p, double q) { return static_cast<Quad>(p) - static_cast<Quad>(q); };
-  const Quad u0 = minus(b[0], a[0]), u1 = minus(b[1], a[1]), u2 = minus(b[2], a[2]);
-  const Quad v0 = minus(c[0], a[0]), v1 = minus(c[1], a[1]), v2 = minus(c[2], a[2]);
-  const Quad w0 = minus(d[0], a[0]), w1 = minus(d[1], a[1]), w2 = minus(d[2], a[2]);
-  return (u1 * v2 - u2 * v1) * w0 + (u2 * v0 - u0 * v2) * w1 + (u0 * v1 - u1 * v0) * w2 > 1e-30 * most;
+/// A point on a lattice of 2^-41 of the size of them all, 2000 times finer than what counts as a height:
+/// there products of three differences are exact in 128 bits.
+using LatticePoint = std::array<double, 3>;
+constexpr double kLattice = 2199023255552.0;  // 2^41
+
+std::vector<LatticePoint> on_lattice(const std::vector<Vec3>& points, const Vec3& low, double size) {
+  std::vector<LatticePoint> all;
+  for (const Vec3& p : points) {
+    LatticePoint& q = all.emplace_back();
+    for (std::size_t d = 0; d < 3; ++d)
+      q[d] = std::round((p[static_cast<int>(d)] - low[static_cast<int>(d)]) / size * kLattice);
+  }
+  return all;
+}
+
+/// Whether d lies above the triangle a, b, c. The hull closes only if such answers agree with each other to
+/// the last digit, however many points lie on one line: where doubles cannot tell, integers do.
+bool is_above(const LatticePoint& a, const LatticePoint& b, const LatticePoint& c, const LatticePoint& d) {
+  std::array<double, 3> u, v, w;
+  for (std::size_t e = 0; e < 3; ++e) u[e] = b[e] - a[e], v[e] = c[e] - a[e], w[e] = d[e] - a[e];
+  const auto volume = [](const auto& p, const auto& q, const auto& r) {
+    return (p[1] * q[2] - p[2] * q[1]) * r[0] + (p[2] * q[0] - p[0] * q[2]) * r[1] +
+           (p[0] * q[1] - p[1] * q[0]) * r[2];
+  };
+  const auto sum = [](const auto& p) { return std::abs(p[0]) + std::abs(p[1]) + std::abs(p[2]); };
+  const double about = volume(u, v, w);
+  if (std::abs(about) > 1e-14 * sum(u) * sum(v) * sum(w)) return about > 0;
+  const auto whole = [](const std::array<double, 3>& p) {
+    return std::array{static_cast<Wide>(p[0]), static_cast<Wide>(p[1]), static_cast<Wide>(p[2])};
+  };
+  return volume(whole(u), whole(v), whole(w)) > 0;
 }
 
 struct Triangle {
@@ -42,6 +61,7 @@ struct Triangle {
 
 struct Hull {
   const std::vector<Vec3>& points;
+  std::vector<LatticePoint> lattice;
   double tolerance;
   std::vector<Triangle> triangles{};
   std::vector<int> starts{};  // of a point on the rim of what is taken away: the new triangle from it
@@ -50,7 +70,8 @@ struct Hull {
   Triangle& triangle(int n) { return triangles[static_cast<std::size_t>(n)]; }
   void add(int a, int b, int c) { triangles.push_back({{a, b, c}, (at(b) - at(a)).cross(at(c) - at(a))}); }
   bool sees(int point, const Triangle& t) const {
-    return is_above(at(t.corners[0]), at(t.corners[1]), at(t.corners[2]), at(point));
+    const auto on = [this](int n) -> const LatticePoint& { return lattice[static_cast<std::size_t>(n)]; };
+    return is_above(on(t.corners[0]), on(t.corners[1]), on(t.corners[2]), on(point));
   }
   /// Each point waits at the first of the triangles from `first` on that it sees; the others lie inside.
   void deal_out(const std::vector<int>& waiting, int first) {
@@ -215,7 +236,8 @@ Polytope convex_hull(const std::vector<Vec3>& points) {
     low = low.cwiseMin(p);
     high = high.cwiseMax(p);
   }
-  Hull hull{points, kCoplanar * (high - low).norm()};
+  const double size = (high - low).norm();
+  Hull hull{points, on_lattice(points, low, size), kCoplanar * size};
   first_tetrahedron(hull);
   for (int t = 0; t < 4; ++t)
     for (std::size_t c = 0; c < 3; ++c)

@@ -8,9 +8,15 @@ namespace ejecta {
 namespace {
 
 const Ball& nearest_ball(const std::vector<Ball>& balls, const Vec3& p) {
-  return *std::min_element(balls.begin(), balls.end(), [&](const Ball& a, const Ball& b) {
-    return (p - a.centre).norm() - a.radius < (p - b.centre).norm() - b.radius;
-  });
+  const Ball* nearest = &balls.front();
+  double distance = (p - nearest->centre).norm() - nearest->radius;
+  for (const Ball& ball : balls) {
+    const double square = (p - ball.centre).squaredNorm(), reach = distance + ball.radius;
+    if (reach > 0 && square >= reach * reach) continue;
+    const double own = std::sqrt(square) - ball.radius;
+    if (own < distance) nearest = &ball, distance = own;
+  }
+  return *nearest;
 }
 
 }  // namespace
@@ -19,7 +25,9 @@ double distance_balls(const std::vector<Ball>& balls, const Vec3& p) {
   double nearest = std::numeric_limits<double>::infinity();
   for (std::size_t n = 0; n < balls.size(); ++n) {
     const double x = p[0] - balls[n].centre[0], y = p[1] - balls[n].centre[1], z = p[2] - balls[n].centre[2];
-    nearest = std::min(nearest, std::sqrt(x * x + y * y + z * z) - balls[n].radius);
+    const double square = x * x + y * y + z * z, reach = nearest + balls[n].radius;
+    if (reach > 0 && square >= reach * reach) continue;  // most balls of a cluster, without a root
+    nearest = std::min(nearest, std::sqrt(square) - balls[n].radius);
   }
   return nearest;
 }

@@ -2,6 +2,8 @@
 
 #include <cmath>
 #include <cstdlib>
+#include <iterator>
+#include <numeric>
 #include <random>
 #include <sstream>
 
@@ -174,18 +176,25 @@ Draw shrunk(Draw u) {
   return u;
 }
 
+/// A wall whose set-up failed; a pebble that a rock presses on the floor, and clusters in which a box is
+/// born: stiffer than any impact that the step is made for, with dashpots that would drive them; balls that
+/// come through a sheet from behind, where triangles turn into a plane.
+constexpr int kOnceWrong[] = {839, 1893, 2662, 2977, 3360, 7508, 8553};
+
 /// A few; with EJECTA_ENERGY_SCENES as many as asked for (label slow: 10,000).
 TEST(Energy, ComesFromNowhere) {
   const char* asked = std::getenv("EJECTA_ENERGY_SCENES");
-  const int scenes = asked ? std::atoi(asked) : 200;
+  std::vector<int> scenes(asked ? static_cast<std::size_t>(std::atoi(asked)) : 200);
+  std::iota(scenes.begin(), scenes.end(), 0);
+  if (!asked) scenes.insert(scenes.end(), std::begin(kOnceWrong), std::end(kOnceWrong));
   int wrong = 0;
-  for (int n = 0; n < scenes && wrong < 3; ++n) {
+  for (const int n : scenes) {
     std::mt19937_64 random(static_cast<std::uint64_t>(n));
     std::uniform_real_distribution<double> uniform(0, 1);
     Draw u(kNumbers);
     for (double& v : u) v = uniform(random);
     if (!gains(u)) continue;
-    ++wrong;
+    if (++wrong > 3) break;
     const Outcome o = outcome(u), fine = outcome(u, 0.25 * kFraction), least = outcome(shrunk(u));
     ADD_FAILURE() << "scene " << n << " gains " << 100 * o.gain << " % (" << 100 * fine.gain
                   << " % with a quarter of the step): " << o.scene << "\n  as simple as it gets ("

@@ -40,6 +40,32 @@ TEST(ConvexHull, RockIsClosedConvexAndHoldsAllPoints) {
     for (const auto& f : hull.faces) EXPECT_LE(f.normal.dot(p), f.offset + 1e-8);
 }
 
+/// Points of a lattice on the faces of a turned block: many on one line and in one plane, but for round-off.
+/// The hull has to close however it falls.
+TEST(ConvexHull, TurnedBlockOfManyPointsHasSixFaces) {
+  std::mt19937 random(11);
+  std::normal_distribution<double> normal;
+  std::uniform_real_distribution<double> uniform(0.0, 1.0);
+  for (const double thin : {1.0, 0.1, 8e-3, 3e-4})
+    for (const int n : {1, 2, 3, 4, 7})
+      for (int turn = 0; turn < 60; ++turn) {
+        const Vec3 half = 30e-3 * Vec3(1, 1, thin), axis(normal(random), normal(random), normal(random));
+        const Quat rotation(Eigen::AngleAxisd(2 * M_PI * uniform(random), axis.normalized()));
+        const Vec3 shift = 0.1 * Vec3(uniform(random), uniform(random), uniform(random));
+        std::vector<Vec3> points;
+        for (int k = 0; k <= n; ++k)
+          for (int j = 0; j <= n; ++j)
+            for (int i = 0; i <= n; ++i) {
+              if (i % n && j % n && k % n) continue;  // inside
+              points.push_back(shift + rotation * half.cwiseProduct(Vec3(2.0 * i / n - 1, 2.0 * j / n - 1,
+                                                                         2.0 * k / n - 1)));
+            }
+        const Polytope hull = convex_hull(points);
+        EXPECT_EQ(hull.faces.size(), 6u) << n << " divisions, thickness " << thin;
+        EXPECT_NEAR(mass_mesh(triangles_of(hull)).volume / (8 * half.prod()), 1.0, 1e-6);
+      }
+}
+
 TEST(ConvexHull, RefusesFlatPoints) {
   EXPECT_THROW(convex_hull({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}, {2, 3, 0}}), InputError);
 }

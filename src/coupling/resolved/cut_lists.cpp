@@ -118,7 +118,7 @@ void CutMap::add_cut_cell(std::span<const Record> records, CutCells& out) {
   edge_of_.push_back(records.size() == 1 ? nearest.edge : 0.0f);
   c.fluid = static_cast<Real>(std::max(1.0 - solid, 1e-4));
   c.first_wall = static_cast<int>(out.walls.size());
-  const Metrics m[3] = {grid_.metrics(0), grid_.metrics(1), grid_.metrics(2)};
+  const std::array<Metrics, 3>& m = grid_.metrics();
   const double volume = grid_.volume(c.i, c.j, c.k);
   const int at[3] = {c.i, c.j, c.k};
   for (std::size_t d = 0; d < 3; ++d) {

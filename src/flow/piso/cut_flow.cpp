@@ -69,6 +69,7 @@ Vec3 CutFlow::begin(const CutCells& cut, const std::array<ConstFieldView, 3>& u,
   kept_.resize(cut.cells.size());
   sums_.resize(cut.cells.size());
   values_.resize(cut.ghosts.size());
+  list_open_faces(cut);
   step_ = static_cast<Real>(dt);
   held_.resize(cut.ghosts.size());
   for (std::size_t n = 0; n < cut.ghosts.size(); ++n)
@@ -92,13 +93,13 @@ bool CutFlow::thin(const CutCells& cut, const GhostCell& g) const {
 }
 
 void CutFlow::push_thin(const CutCells& cut, ConstFieldView p, Real dt) {
-  const GridMetrics metrics = metrics_of(grid_);
+  const GridMetrics& metrics = grid_.metrics();
   for_each_index(static_cast<int>(cut.ghosts.size()), [&](int n) {
     const GhostCell& g = cut.ghosts[static_cast<std::size_t>(n)];
     if (!thin(cut, g)) return;
     Triple sum{0, 0, 0}, total{0, 0, 0};
     for_each_open_face_of(
-        grid_, metrics, cut, *cut.small_at(g.i, g.j, g.k),
+        grid_, cut, *cut.small_at(g.i, g.j, g.k),
         [&](const CutCell& c, int d, const Cell& face, const Cell& beyond, Real sign, Real open, Real) {
           const std::size_t s = static_cast<std::size_t>(d);
           const Real change = p(beyond[0], beyond[1], beyond[2]) - p(c.i, c.j, c.k);
@@ -110,25 +111,44 @@ void CutFlow::push_thin(const CutCells& cut, ConstFieldView p, Real dt) {
   });
 }
 
-CutFlow::Gradient CutFlow::gradient(const CutCells& cut, const CutCell& carrier, ConstFieldView p) const {
-  Triple sum{0, 0, 0}, open_area{0, 0, 0}, balance{0, 0, 0};
-  for_each_open_face(
-      grid_, cut, carrier,
-      [&](const CutCell& c, int d, const Cell& face, const Cell& beyond, Real sign, Real open, Real area) {
-        const std::size_t s = static_cast<std::size_t>(d);
-        const Metrics m = grid_.metrics(d);
-        const Real lower = m.weight[face[s]], weight = sign > 0 ? Real(1) - lower : lower;
-        const Real change = p(beyond[0], beyond[1], beyond[2]) - p(c.i, c.j, c.k);
-        sum[s] += sign * open * area * change * m.inv_distance[face[s]];
-        open_area[s] += open * area;
-        balance[s] += sign * open * area * weight * change;
-      });
-  const Real volume = carrier.carried * static_cast<Real>(grid_.volume(carrier.i, carrier.j, carrier.k));
-  Gradient g;
-  for (std::size_t d = 0; d < 3; ++d) {
-    g.value[d] = open_area[d] > Real(0) ? sum[d] / open_area[d] : Real(0);
-    g.beyond[d] = volume * g.value[d] - balance[d];
+void CutFlow::list_open_faces(const CutCells& cut) {
+  faces_of_.resize(cut.cells.size());
+  open_faces_.resize(6 * cut.members.size());
+  const ConstFieldView at = carried();
+  const auto offset = [&](const Cell& c) { return c[0] + c[1] * at.sy + c[2] * at.sz; };
+  for_each_index(static_cast<int>(cut.cells.size()), [&](int n) {
+    const CutCell& carrier = cut.cells[static_cast<std::size_t>(n)];
+    if (carrier.carrier != n) return;
+    OpenFacesOf& faces = faces_of_[static_cast<std::size_t>(n)];
+    faces = {6 * carrier.first_member, 0};
+    Triple area_along{0, 0, 0};
+    OpenFacePart* const first = open_faces_.data() + faces.first;
+    for_each_open_face(
+        grid_, cut, carrier,
+        [&](const CutCell& c, int d, const Cell& face, const Cell& beyond, Real sign, Real open, Real area) {
+          const Metrics& m = grid_.metrics(d);
+          const int index = face[static_cast<std::size_t>(d)];
+          const Real lower = m.weight[index], weight = sign > 0 ? Real(1) - lower : lower;
+          first[faces.count++] = {offset({c.i, c.j, c.k}), offset(beyond), d,
+                                  sign * open * area * m.inv_distance[index], sign * open * area * weight};
+          area_along[static_cast<std::size_t>(d)] += open * area;
+        });
+    for (int f = 0; f < faces.count; ++f) first[f].slope /= area_along[static_cast<std::size_t>(first[f].d)];
+  });
+}
+
+CutFlow::Gradient CutFlow::gradient(const CutCell& carrier, ConstFieldView p) const {
+  const OpenFacesOf& faces = faces_of_[static_cast<std::size_t>(carrier.carrier)];
+  Gradient g{};
+  Triple balance{0, 0, 0};
+  for (int f = faces.first; f < faces.first + faces.count; ++f) {
+    const OpenFacePart& face = open_faces_[static_cast<std::size_t>(f)];
+    const Real change = p.origin[face.beyond] - p.origin[face.here];
+    g.value[static_cast<std::size_t>(face.d)] += face.slope * change;
+    balance[static_cast<std::size_t>(face.d)] += face.pull * change;
   }
+  const Real volume = carrier.carried * static_cast<Real>(grid_.volume(carrier.i, carrier.j, carrier.k));
+  for (std::size_t d = 0; d < 3; ++d) g.beyond[d] = volume * g.value[d] - balance[d];
   return g;
 }
 
@@ -163,7 +183,7 @@ void CutFlow::rub(CutCells& cut, const CutCell& c, const WallTurbulence& turbule
 /// d/dt of the mean of x over fluid that walls sweep (Reynolds): sum of their flow times what x has there
 /// beyond that mean, over the volume.
 std::array<Real, 3> CutFlow::middle_moves(const CutCells& cut, const CutCell& carrier) const {
-  const GridMetrics m = metrics_of(grid_);
+  const GridMetrics& m = grid_.metrics();
   const Real volume = carrier.carried * static_cast<Real>(grid_.volume(carrier.i, carrier.j, carrier.k));
   const auto from_carrier = [&](const CutCell& c) {
     return Triple{m[0].centre[c.i] - m[0].centre[carrier.i], m[1].centre[c.j] - m[1].centre[carrier.j],
@@ -209,7 +229,7 @@ Vec3 CutFlow::predict(CutCells& cut, const MomentumTerms& t, const WallTurbulenc
           for (std::size_t e = 0; e < 3; ++e)
             balance[e] += through * (at.carried[e] - here[e]) - sign * open * area * at.stress[e];
         });
-    const Triple g = gradient(cut, c, t.pressure).value;
+    const Triple g = gradient(c, t.pressure).value;
     gradient_[static_cast<std::size_t>(n)] = g;
     const Real volume = c.carried * static_cast<Real>(grid_.volume(c.i, c.j, c.k)), step = t.b * t.dt;
     // What is balanced is the mean of the fluid; what is kept, the velocity at the centre of the cell.
@@ -217,7 +237,7 @@ Vec3 CutFlow::predict(CutCells& cut, const MomentumTerms& t, const WallTurbulenc
     Triple base, v;
     for (std::size_t e = 0; e < 3; ++e) {
       Real rate = t.acceleration[e] - balance[e] / volume - g[e];
-      const Real shifted = moves == Triple{} ? Real(0) : dot(moves, gradient(cut, c, t.u[e]).value);
+      const Real shifted = moves == Triple{} ? Real(0) : dot(moves, gradient(c, t.u[e]).value);
       rate -= shifted;
       if (t.source[e].origin) rate += t.source[e](c.i, c.j, c.k);
       base[e] = t.b * here[e];
@@ -240,7 +260,7 @@ Vec3 CutFlow::predict(CutCells& cut, const MomentumTerms& t, const WallTurbulenc
 
 void CutFlow::list_closed_ends(const CutCells& cut) {
   closed_ends_.clear();
-  const GridMetrics metrics = metrics_of(grid_);
+  const GridMetrics& metrics = grid_.metrics();
   const auto look = [&](int d, const Cell& face, Real closed) {
     const int along = face[static_cast<std::size_t>(d)];
     if (along == 0 || along == grid_.n(d))
@@ -344,7 +364,7 @@ void CutFlow::extend(const CutCells& cut, const std::array<FieldView, 3>& u,
 
 void CutFlow::move_small(const CutCells& cut, const std::array<ConstFieldView, 3>& q,
                          const std::array<FieldView, 3>& u) const {
-  const GridMetrics metrics = metrics_of(grid_);
+  const GridMetrics& metrics = grid_.metrics();
   for_each_small(cut, [&](const CutCell& c, const CutCell& carrier) {
     const Cell at{c.i, c.j, c.k}, to{carrier.i, carrier.j, carrier.k};
     const int apart = std::abs(to[0] - at[0]) + std::abs(to[1] - at[1]) + std::abs(to[2] - at[2]);
@@ -362,7 +382,7 @@ void CutFlow::move_small(const CutCells& cut, const std::array<ConstFieldView, 3
     std::size_t along = 0;
     Cell between{};
     for_each_open_face_of(
-        grid_, metrics, cut, c,
+        grid_, cut, c,
         [&](const CutCell&, int d, const Cell& face, const Cell& beyond, Real sign, Real open, Real area) {
           const std::size_t s = static_cast<std::size_t>(d);
           if (beyond != to) {
@@ -404,7 +424,7 @@ void CutFlow::extend_to_small(const CutCells& cut, FieldView p) const {
     for (int d = 0; apart == 1 && d < 3; ++d) {
       const std::size_t s = static_cast<std::size_t>(d);
       if (from[s] == to[s]) continue;
-      const Metrics m = grid_.metrics(d);
+      const Metrics& m = grid_.metrics(d);
       const int away = from[s] > to[s] ? 1 : -1;  // from the small cell
       Cell beyond = from, face = from;
       beyond[s] += away;
@@ -472,7 +492,7 @@ void CutFlow::face_velocities(const CutCells& cut, const std::array<ConstFieldVi
                               Real filter_time, const std::array<FieldView, 3>& q) {
   for_each_index(static_cast<int>(cut.cells.size()), [&](int n) {
     const CutCell& c = cut.cells[static_cast<std::size_t>(n)];
-    if (c.carrier == n) gradient_[static_cast<std::size_t>(n)] = gradient(cut, c, p).value;
+    if (c.carrier == n) gradient_[static_cast<std::size_t>(n)] = gradient(c, p).value;
   });
   // The pressure gradient that moved a cell; false where none did of its own.
   const auto gradient_at = [&](const Cell& c, int d, Real& value) {
@@ -495,7 +515,7 @@ void CutFlow::face_velocities(const CutCells& cut, const std::array<ConstFieldVi
     Cell low = face;
     --low[s];
     if (!gradient_at(low, d, below) || !gradient_at(face, d, above)) return false;
-    const Metrics m = grid_.metrics(d);
+    const Metrics& m = grid_.metrics(d);
     const Real w = m.weight[face[s]];
     value = w * below + (Real(1) - w) * above -
             (p(face[0], face[1], face[2]) - p(low[0], low[1], low[2])) * m.inv_distance[face[s]];
@@ -588,7 +608,7 @@ void CutFlow::correct(const CutCells& cut, ConstFieldView phi, Real dt, const st
   for_each_index(static_cast<int>(cut.cells.size()), [&](int n) {
     const CutCell& c = cut.cells[static_cast<std::size_t>(n)];
     if (c.carrier != n) return;
-    const Triple g = gradient(cut, c, phi).value;
+    const Triple g = gradient(c, phi).value;
     for (std::size_t e = 0; e < 3; ++e)
       u[e](c.i, c.j, c.k) = kept_[static_cast<std::size_t>(n)][e] - dt * g[e];
   });
@@ -598,7 +618,7 @@ void CutFlow::press(CutCells& cut, ConstFieldView p, double dt_density) const {
   for_each_index(static_cast<int>(cut.cells.size()), [&](int n) {
     const CutCell& c = cut.cells[static_cast<std::size_t>(n)];
     if (c.carrier != n) return;
-    const Gradient g = gradient(cut, c, p);
+    const Gradient g = gradient(c, p);
     Real total = 0;
     for_each_wall(cut, c, [&](const CutWall& w, int) { total += norm(w.area); });
     if (total <= Real(0)) return;

@@ -87,7 +87,7 @@ class CutFlow {
   struct Gradient {
     std::array<Real, 3> value, beyond;
   };
-  Gradient gradient(const CutCells& cut, const CutCell& carrier, ConstFieldView p) const;
+  Gradient gradient(const CutCell& carrier, ConstFieldView p) const;
   /// Velocity of the middle of the fluid that a carrier is balanced over, as walls sweep it, m/s.
   std::array<Real, 3> middle_moves(const CutCells& cut, const CutCell& carrier) const;
   /// What the velocity along d in the middle of the open part of an inner face has beyond that in the middle
@@ -102,6 +102,16 @@ class CutFlow {
     std::array<int, 3> face;
     double sign, area;  ///< +1 where the box lies above it; closed area, m2
   };
+  /// What the difference across an open face adds to the gradient of a carrier, by cells of a field.
+  struct OpenFacePart {
+    std::ptrdiff_t here, beyond;
+    int d;
+    Real slope, pull;  ///< to the mean over open faces, 1/m; to the balance of the pressure, m2
+  };
+  struct OpenFacesOf {
+    int first = 0, count = 0;
+  };
+  void list_open_faces(const CutCells& cut);
   void list_closed_ends(const CutCells& cut);
   /// Whether a small cell lies between walls so close that no cell of the fluid tells what moves in it.
   bool thin(const CutCells& cut, const GhostCell& g) const;
@@ -121,8 +131,10 @@ class CutFlow {
   std::vector<std::array<Real, 3>> values_;           // scratch of extend
   std::vector<Real> scalars_;                         // scratch of extend_to_solids
   std::vector<ClosedEnd> closed_ends_;
-  std::vector<Real> open_velocity_;  // of cut.faces while they are closed
-  std::vector<Vec3> sums_;           // scratch
+  std::vector<OpenFacePart> open_faces_;
+  std::vector<OpenFacesOf> faces_of_;  // of cut.cells, those that carry
+  std::vector<Real> open_velocity_;    // of cut.faces while they are closed
+  std::vector<Vec3> sums_;             // scratch
 };
 
 }  // namespace ejecta

@@ -76,7 +76,7 @@ void CutGas::begin(const CutCells& cut, Block& u, Block& w, double dt) {
     const int carrier = cut.cells[static_cast<std::size_t>(index - 1)].carrier;
     if (carrier >= 0) swept_[static_cast<std::size_t>(carrier)] += flow;
   };
-  const GridMetrics metrics = metrics_of(grid_);
+  const GridMetrics& metrics = grid_.metrics();
   for (const CutFace& f : cut.faces) {
     const double flow =
         double(f.closed) * double(face_area_of(metrics, f.d, {f.i, f.j, f.k})) * double(f.velocity);
@@ -144,7 +144,7 @@ void CutGas::keep(const CutCells& cut, const Block& middle) {
 void CutGas::push(const CutCells& cut, Block& middle, Real half_dt) const {
   const ConstFieldView p = middle[kP].view();
   for_each_carrier(cut, [&](std::size_t n, const CutCell& c) {
-    const std::array<Real, 3> gradient = flow_.gradient(cut, c, p).value;
+    const std::array<Real, 3> gradient = flow_.gradient(c, p).value;
     for (std::size_t d = 0; d < 3; ++d)
       middle[kU + d](c.i, c.j, c.k) = kept_[n].u[d] - half_dt / kept_[n].rho * gradient[d];
   });
@@ -185,7 +185,7 @@ void CutGas::balance(CutCells& cut, const std::array<Block, 3>& flux, const Bloc
     if (moves != std::array<Real, 3>{}) {
       const Real before = dot(v, v);
       for (std::size_t d = 0; d < 3; ++d) {
-        const Real change = -dt * dot(moves, flow_.gradient(cut, c, middle[kU + d].view()).value);
+        const Real change = -dt * dot(moves, flow_.gradient(c, middle[kU + d].view()).value);
         v[d] += change;
         shifted_[n].momentum[int(d)] = double(rho) * volume * double(change);
       }

@@ -13,7 +13,7 @@ constexpr int kMostIterations = 60;
 CutPressure::CutPressure(const Grid& grid, FastDiagonalPoisson& whole,
                          const std::array<PoissonBoundary, 6>& boundary)
     : grid_(grid),
-      metrics_(metrics_of(grid)),
+      metrics_(grid.metrics()),
       whole_(whole),
       boundary_(boundary),
       work_(grid.make_field()),

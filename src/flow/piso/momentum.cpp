@@ -146,7 +146,7 @@ BoundaryFlow predict(const Grid& grid, const MomentumTerms& t, std::vector<Bound
 
 /// As MomentumFlux, for one face.
 FaceMomentum momentum_at_face(const Grid& grid, const MomentumTerms& t, int d, int i, int j, int k) {
-  const Metrics m[3] = {grid.metrics(0), grid.metrics(1), grid.metrics(2)};
+  const std::array<Metrics, 3>& m = grid.metrics();
   const int at[3] = {i, j, k};
   const std::ptrdiff_t s = stride(t.u[0], d);
   const FaceMetrics f = face_metrics(m[d], at[d]);

@@ -20,7 +20,7 @@ constexpr Real kClosed = Real(1) - Real(1e-5);
 std::optional<Sealed> find_sealed(const Grid& grid, const CutCells& cut, const Boundaries& boundaries,
                                   const std::array<ConstFieldView, 3>& q) {
   if (cut.empty()) return std::nullopt;
-  const GridMetrics metrics = metrics_of(grid);
+  const GridMetrics& metrics = grid.metrics();
   Array3<char> seen(grid.nx(), grid.ny(), grid.nz());
   seen.fill(0);
   const auto is_fluid = [&](const Cell& c) {

@@ -16,7 +16,8 @@ inline constexpr Real kQuarterCmu = Real(0.5477226);  ///< 0.09^(1/4)
 /// within the logarithm keeps it above 0 where grains leave no viscous layer; elsewhere it is lost in E y+.
 inline Real u_plus(Real y_plus, Real rough) {
   const Real e = kE / (Real(1) + Real(0.3) * rough);
-  return std::min(y_plus, std::log1p(e * y_plus) / kKappa);
+  const Real x = e * y_plus;
+  return std::min(y_plus, (x > Real(0.1) ? std::log(Real(1) + x) : std::log1p(x)) / kKappa);  // log is faster
 }
 
 /// Friction velocity from the mean velocity alone.
