@@ -105,6 +105,7 @@ class Incompressible {
   void resume(double time) {
     boundaries_.update(time);
     cut_flow_.resume();
+    superficial_ = true;  // where there were grains; else it does not matter
   }
   /// Everything a resume needs.
   std::vector<NamedField> state();
@@ -112,6 +113,7 @@ class Incompressible {
  private:
   void advance_through_grains(double time, double dt, CutCells& cut, FluidFraction& f);
   BoundaryFlow predict_increment(double time, double h);
+  void make_superficial(FluidFraction& f);
   void drag_cells(double h);
   void find_results(FluidFraction& f);
   void find_friction();
@@ -149,6 +151,7 @@ class Incompressible {
   std::unique_ptr<FractionStep> fraction_step_;  // once there are grains
   FluidFraction* grains_ = nullptr;              // that drag the fluid in this step
   const FluidFraction* fraction_ = nullptr;      // of which the fluid is a part since the last step
+  bool superficial_ = false;                     // q_ is that of the fluid times its fraction
   double fraction_dt_ = 0;
   Field no_pressure_;
   std::array<Field, 3> friction_;  // div tau / rho at the beginning of a step with grains, m/s2

@@ -7,6 +7,7 @@
 #include "flow/piso/incompressible.hpp"
 #include "flow/piso/momentum.hpp"
 #include "flow/stencil.hpp"
+#include "grid/faces.hpp"
 
 namespace ejecta {
 namespace {
@@ -24,6 +25,8 @@ void Incompressible::advance(double time, double dt, CutCells& cut, FluidFractio
   fraction_dt_ = dt;
   boundaries_.fill_velocity(views(u_), views(q_));
   find_friction();
+  if (takes_room && !superficial_) make_superficial(f);
+  superficial_ = takes_room;
   if (takes_room) {
     advance_through_grains(time, dt, cut, f);
   } else {
@@ -37,6 +40,21 @@ void Incompressible::advance(double time, double dt, CutCells& cut, FluidFractio
       to(i, j, k) += from(i, j, k);
     });
   book_grains(f, dt);
+}
+
+/// Grains are in a flow that did not know them.
+void Incompressible::make_superficial(FluidFraction& f) {
+  boundaries_.fill_zero_gradient(f.solids_before.view());
+  for (int d = 0; d < 3; ++d) {
+    if (!grid_.active(d)) continue;
+    const std::ptrdiff_t s = stride(p_.view(), d);
+    for_each_cell(faces_along(grid_, d), [q = q_[static_cast<std::size_t>(d)].view(),
+                                          solids = f.solids_before.view(), s](int i, int j, int k) {
+      const Real* at = solids.row(j, k) + i;
+      q(i, j, k) *= Real(1) - Real(0.5) * (at[-s] + at[0]);
+    });
+  }
+  boundaries_.prescribe_face_velocity(views(q_));
 }
 
 /// As advance(), with e = 1 - solids of the grains:
