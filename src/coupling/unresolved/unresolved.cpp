@@ -58,7 +58,7 @@ std::array<double, kN + 1> UnresolvedCoupling::gather(const Place& p,
         for (int a = 0; a < n; ++a) weight[a] *= room[a];
       }
       Real part[kN + 1] = {};
-      const Real* rows[kN];
+      const Real* rows[kN + 1];
       for (std::size_t c = 0; c < kN; ++c) rows[c] = fields[c].row(j, k) + i;
       for (int a = 0; a < n; ++a) {
         for (std::size_t c = 0; c < kN; ++c) part[c] += weight[a] * rows[c][a];

@@ -53,7 +53,7 @@ class UnresolvedCoupling {
   const std::vector<GrainDrag>& drags() const { return drags_; }
   /// Drag on every grain in the last collection, N.
   const std::vector<Vec3>& drag_forces() const { return drag_force_; }
-  /// Sum of solids * volume of the cells, and of the grains' volume in the box, m3.
+  /// Sum of solids times volume over the cells, m3: that of the grains in the box.
   double mapped_volume(const FluidFraction& f) const;
 
   std::vector<double> state() const;

@@ -116,7 +116,7 @@ class Incompressible {
   void make_superficial(FluidFraction& f);
   void drag_cells(double h);
   void find_results(FluidFraction& f);
-  void find_friction();
+  void add_friction(FluidFraction& f, double part);
   void book_grains(const FluidFraction& f, double dt);
   void book_through(const BoundaryFlow& through, double dt);
   BoundaryFlow predict(double a, double b, double time, Real dt, CutCells& cut, double weight);
@@ -154,7 +154,7 @@ class Incompressible {
   bool superficial_ = false;                     // q_ is that of the fluid times its fraction
   double fraction_dt_ = 0;
   Field no_pressure_;
-  std::array<Field, 3> friction_;  // div tau / rho at the beginning of a step with grains, m/s2
+  std::array<Field, 3> friction_;  // div tau / rho with grains, m/s2
   Vec3 impulse_on_grains_{0, 0, 0};
   FlowTimes times_;
   FlowLedger ledger_;

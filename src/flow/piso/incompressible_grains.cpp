@@ -23,8 +23,6 @@ void Incompressible::advance(double time, double dt, CutCells& cut, FluidFractio
   const bool takes_room = f.acts && cut.empty();
   fraction_ = takes_room ? &f : nullptr;
   fraction_dt_ = dt;
-  boundaries_.fill_velocity(views(u_), views(q_));
-  find_friction();
   if (takes_room && !superficial_) make_superficial(f);
   superficial_ = takes_room;
   if (takes_room) {
@@ -34,11 +32,9 @@ void Incompressible::advance(double time, double dt, CutCells& cut, FluidFractio
     advance(time, dt, cut);
     grains_ = nullptr;
     find_results(f);
+    boundaries_.fill_velocity(views(u_), views(q_));
+    add_friction(f, 1.0);
   }
-  for (std::size_t c = 0; c < 3; ++c)
-    for_each_cell(grid_.range(), [to = f.push[c].view(), from = friction_[c].view()](int i, int j, int k) {
-      to(i, j, k) += from(i, j, k);
-    });
   book_grains(f, dt);
 }
 
@@ -85,8 +81,9 @@ void Incompressible::advance_through_grains(double time, double dt, CutCells& cu
         });
   };
   {
-    BoundaryFlow through = predict_increment(time, dt);
+    const BoundaryFlow through = predict_increment(time, dt);
     book_through(through, dt);
+    add_friction(f, kHalf);
     ScopedTimer timer(times_.momentum);
     for (std::size_t c = 0; c < 3; ++c) gather(h, c, u_[c].view(), u_[c].view(), Real(1), Real(0));
   }
@@ -104,8 +101,9 @@ void Incompressible::advance_through_grains(double time, double dt, CutCells& cu
   phi_ = p_;
 
   {
-    BoundaryFlow through = predict_increment(time + dt, 0.5 * dt);
+    const BoundaryFlow through = predict_increment(time + dt, 0.5 * dt);
     book_through(through, dt);
+    add_friction(f, kHalf);
     ScopedTimer timer(times_.momentum);
     for (std::size_t c = 0; c < 3; ++c)
       gather(Real(0.5) * h, c, u_old_[c].view(), u_[c].view(), Real(0.5), Real(0.5));
@@ -156,19 +154,21 @@ BoundaryFlow Incompressible::predict_increment(double time, double h) {
   return through;
 }
 
-/// div tau / rho of the velocity at the beginning of the step, as nu times the Laplacian: whatever it is,
-/// what the grains get the fluid loses.
-void Incompressible::find_friction() {
+/// div tau / rho of the velocity as it is, as nu times the Laplacian: whatever it is, what the grains get the
+/// fluid loses. `part` of it acts on the grains.
+void Incompressible::add_friction(FluidFraction& f, double part) {
   if (friction_[0].size() == 0)
     for (Field& field : friction_) field = grid_.make_field();
   const Metrics m[3] = {grid_.metrics(0), grid_.metrics(1), grid_.metrics(2)};
   const Real nu = static_cast<Real>(setup_.viscosity);
+  const Real share = static_cast<Real>(part);
   const ConstFieldView eddy = turbulence_ ? turbulence_->eddy_viscosity() : ConstFieldView{};
   const bool active[3] = {grid_.active(0), grid_.active(1), grid_.active(2)};
   for (std::size_t c = 0; c < 3; ++c) {
     const ConstFieldView u = u_[c].view();
     for_each_cell(
-        grid_.range(), [ =, out = friction_[c].view() ](int i, int j, int k) __attribute__((always_inline)) {
+        grid_.range(), [ =, push = f.push[c].view(), out = friction_[c].view() ](
+                           int i, int j, int k) __attribute__((always_inline)) {
           const Real* at = u.row(j, k) + i;
           Real sum = 0;
           const auto add = [&](const Metrics& d, int n, std::ptrdiff_t s) __attribute__((always_inline)) {
@@ -178,7 +178,9 @@ void Incompressible::find_friction() {
           if (active[0]) add(m[0], i, 1);
           if (active[1]) add(m[1], j, u.sy);
           if (active[2]) add(m[2], k, u.sz);
-          out(i, j, k) = (eddy.origin ? nu + eddy(i, j, k) : nu) * sum;
+          const Real stress = (eddy.origin ? nu + eddy(i, j, k) : nu) * sum;
+          out(i, j, k) = stress;
+          push(i, j, k) += share * stress;
         });
   }
 }
