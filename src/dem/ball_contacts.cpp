@@ -243,6 +243,7 @@ void BallContacts::compute(const Parts& parts, const Materials& materials, const
 /// in this one.
 void BallContacts::share_energy(const Parts& parts, const Materials& materials, const Domain& domain) {
   struct Spring {
+    int pair;
     Vec3 normal;
     double energy;
   };
@@ -251,24 +252,27 @@ void BallContacts::share_energy(const Parts& parts, const Materials& materials, 
     const BallRow& a = parts.row(a_[at(n)]);
     Contact<double> c;
     c.overlap = near.overlap - std::min(near.overlap, history_[kBirth][at(n)]);
-    if (!(c.overlap > 0)) return {near.normal, 0.0};
+    if (!(c.overlap > 0)) return {n, near.normal, 0.0};
     const bool plane = n >= planes_from_;
     const BallRow& b = plane ? planes_[at(b_[at(n)])] : parts.row(b_[at(n)]);
     c.radius = plane ? a.radius : a.radius * b.radius / (a.radius + b.radius);
     const PairConstants<double>& p =
         materials.pair(static_cast<int>(a.material), static_cast<int>(b.material));
-    return {near.normal, with_law(materials.law(), [&](auto law) { return law.spring(c, p).energy; })};
+    return {n, near.normal, with_law(materials.law(), [&](auto law) { return law.spring(c, p).energy; })};
   };
   for_each_block(static_cast<int>(groups_.size()) - 1, kGroupBlock, [&](int, int begin, int end) {
-    thread_local std::vector<Spring> springs;
+    thread_local std::vector<Spring> touching;  // of one group: few of those that are near
     for (int g = begin; g < end; ++g) {
-      springs.clear();
-      for (int i = groups_[at(g)]; i < groups_[at(g + 1)]; ++i) springs.push_back(spring_of(grouped_[at(i)]));
-      for (std::size_t i = 0; i < springs.size(); ++i) {
+      touching.clear();
+      for (int i = groups_[at(g)]; i < groups_[at(g + 1)]; ++i) {
+        const int n = grouped_[at(i)];
+        shares_[at(n)] = 1.0;
+        if (const Spring s = spring_of(n); s.energy > 0) touching.push_back(s);
+      }
+      for (const Spring& own : touching) {
         double all = 0.0;
-        for (const Spring& s : springs) all += s.energy * std::max(0.0, s.normal.dot(springs[i].normal));
-        shares_[at(grouped_[static_cast<std::size_t>(groups_[at(g)]) + i])] =
-            springs[i].energy > 0 ? springs[i].energy / all : 1.0;
+        for (const Spring& s : touching) all += s.energy * std::max(0.0, s.normal.dot(own.normal));
+        shares_[at(own.pair)] = own.energy / all;
       }
     }
   });

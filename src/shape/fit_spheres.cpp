@@ -3,11 +3,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
+#include <iterator>
 #include <limits>
+#include <map>
+#include <numeric>
 #include <queue>
 
 #include "base/error.hpp"
+#include "base/parallel.hpp"
 #include "shape/polytope.hpp"
 
 namespace ejecta {
@@ -54,16 +60,47 @@ std::vector<Sample> samples_of(const TriangleMesh& mesh, double spacing) {
   return samples;
 }
 
+/// Points side by side in memory, so that all are looked at in registers; filled up to whole lanes with
+/// points that have no weight.
+struct Points {
+  static constexpr int kLanes = 8;
+  std::vector<double> x, y, z, weight;  ///< weight: 1 where a point counts, else 0
+
+  explicit Points(const std::vector<Sample>& samples) {
+    const std::size_t lanes = kLanes, count = (samples.size() + lanes - 1) / lanes * lanes;
+    for (std::size_t n = 0; n < count; ++n) {
+      const Vec3& p = samples[std::min(n, samples.size() - 1)].point;
+      x.push_back(p.x());
+      y.push_back(p.y());
+      z.push_back(p.z());
+      weight.push_back(n < samples.size() ? 1.0 : 0.0);
+    }
+  }
+  /// each(lane, n, way from `from` to point n) for all points.
+  template <class Each>
+  void visit(const Vec3& from, const Each& each) const {
+    const double fx = from.x(), fy = from.y(), fz = from.z();
+    const double *px = x.data(), *py = y.data(), *pz = z.data();
+    for (int n = 0; n < static_cast<int>(x.size()); n += kLanes)
+      for_each_in_lanes(0, kLanes, [&](int lane) {
+        each(lane, n + lane, px[n + lane] - fx, py[n + lane] - fy, pz[n + lane] - fz);
+      });
+  }
+};
+
 /// The largest ball that touches the surface at sample `s` from inside and holds no other: of all balls
 /// through `s` and another sample, tangent at `s`, the smallest. (They lie inside each other.)
-Ball shrink(const std::vector<Sample>& samples, const Sample& s, double largest) {
-  double radius = largest;
-  for (const Sample& q : samples) {
-    const Vec3 way = q.point - s.point;
-    const double height = way.dot(s.inward), squared = way.squaredNorm();
-    if (2 * radius * height > squared) radius = 0.5 * squared / height;
-  }
-  return {s.point + radius * s.inward, radius};
+Ball shrink(const Points& points, const Sample& s, double largest) {
+  double radius[Points::kLanes];
+  std::fill(std::begin(radius), std::end(radius), largest);
+  const double ix = s.inward.x(), iy = s.inward.y(), iz = s.inward.z();
+  points.visit(s.point, [&](int lane, int, double dx, double dy, double dz) {
+    const double height = dx * ix + dy * iy + dz * iz, squared = dx * dx + dy * dy + dz * dz;
+    const double own = 0.5 * squared / height;
+    radius[lane] = height > 0 && own < radius[lane] ? own : radius[lane];
+  });
+  const double least = *std::min_element(std::begin(radius), std::end(radius));
+  return {s.point + least * s.inward, least};
 }
 
 double distance_to(const TriangleMesh& mesh, const Vec3& p) {
@@ -99,28 +136,60 @@ std::vector<Ball> fit_spheres(const TriangleMesh& mesh, double error, const std:
     high = high.cwiseMax(s.point);
   }
   // Candidates, one for balls that are nearly the same.
+  Points points(samples);
+  std::vector<Ball> largest(samples.size());
+  for_each_index(static_cast<int>(samples.size()), [&](int n) {
+    const std::size_t at = static_cast<std::size_t>(n);
+    largest[at] = shrink(points, samples[at], (high - low).norm());
+  });
+  // By cells so wide that what is nearly the same lies in neighbours.
   std::vector<Ball> candidates;
-  for (const Sample& s : samples) {
-    const Ball ball = shrink(samples, s, (high - low).norm());
-    const bool known = std::any_of(candidates.begin(), candidates.end(), [&](const Ball& c) {
-      return (c.centre - ball.centre).norm() + std::abs(c.radius - ball.radius) < 0.15 * error;
-    });
-    if (!known) candidates.push_back(ball);
+  std::map<std::array<std::int64_t, 3>, std::vector<std::size_t>> cells;
+  const double same = 0.15 * error;
+  for (const Ball& ball : largest) {
+    const auto cell = [&](int c, int step) {
+      return static_cast<std::int64_t>(std::floor((ball.centre[c] - low[c]) / same)) + step;
+    };
+    bool known = false;
+    for (int step = 0; step < 27 && !known; ++step) {
+      const auto near = cells.find({cell(0, step % 3 - 1), cell(1, step / 3 % 3 - 1), cell(2, step / 9 - 1)});
+      if (near == cells.end()) continue;
+      known = std::any_of(near->second.begin(), near->second.end(), [&](std::size_t n) {
+        const Ball& c = candidates[n];
+        return (c.centre - ball.centre).norm() + std::abs(c.radius - ball.radius) < same;
+      });
+    }
+    if (known) continue;
+    cells[{cell(0, 0), cell(1, 0), cell(2, 0)}].push_back(candidates.size());
+    candidates.push_back(ball);
   }
-  for (Ball& c : candidates) c.radius = distance_to(mesh, c.centre);  // inside, also between the samples
+  for_each_index(static_cast<int>(candidates.size()), [&](int n) {  // inside, also between the samples
+    Ball& c = candidates[static_cast<std::size_t>(n)];
+    c.radius = distance_to(mesh, c.centre);
+  });
 
-  const auto covers = [&](const Ball& b, const Sample& s) {
-    return (s.point - b.centre).norm() - b.radius <= kNear * error;
+  // A point weighs until a chosen ball covers it.
+  const auto reach_squared = [&](const Ball& b) {
+    const double reach = b.radius + kNear * error;
+    return reach * reach;
   };
-  std::vector<char> covered(samples.size(), 0);
+  double* const weight = points.weight.data();
   const auto gain = [&](const Ball& b) {
-    std::size_t count = 0;
-    for (std::size_t n = 0; n < samples.size(); ++n) count += !covered[n] && covers(b, samples[n]);
-    return count;
+    double count[Points::kLanes] = {};
+    points.visit(b.centre, [&count, weight, reach = reach_squared(b)](int lane, int n, double dx, double dy,
+                                                                      double dz) {
+      const double own = weight[n];
+      count[lane] += dx * dx + dy * dy + dz * dz <= reach ? own : 0.0;
+    });
+    return static_cast<std::size_t>(std::accumulate(std::begin(count), std::end(count), 0.0));
   };
   // What a ball gains only falls as others are taken: an old figure is a bound (lazy greedy).
   std::priority_queue<std::pair<std::size_t, std::size_t>> queue;
-  for (std::size_t c = 0; c < candidates.size(); ++c) queue.emplace(gain(candidates[c]), c);
+  std::vector<std::size_t> gains(candidates.size());
+  for_each_index(static_cast<int>(candidates.size()), [&](int n) {
+    gains[static_cast<std::size_t>(n)] = gain(candidates[static_cast<std::size_t>(n)]);
+  });
+  for (std::size_t c = 0; c < candidates.size(); ++c) queue.emplace(gains[c], c);
   std::vector<Ball> chosen;
   while (!queue.empty()) {
     const std::size_t c = queue.top().second;
@@ -132,11 +201,15 @@ std::vector<Ball> fit_spheres(const TriangleMesh& mesh, double error, const std:
       continue;
     }
     chosen.push_back(candidates[c]);
-    for (std::size_t n = 0; n < samples.size(); ++n) covered[n] |= covers(candidates[c], samples[n]);
+    points.visit(candidates[c].centre,
+                 [weight, reach = reach_squared(candidates[c])](int, int n, double dx, double dy, double dz) {
+                   const double own = weight[n];
+                   weight[n] = dx * dx + dy * dy + dz * dz <= reach ? 0.0 : own;
+                 });
   }
-  const auto missed = std::find(covered.begin(), covered.end(), 0);
-  if (missed != covered.end()) {
-    const Vec3& p = samples[static_cast<std::size_t>(missed - covered.begin())].point;
+  const auto missed = std::find(points.weight.begin(), points.weight.end(), 1.0);
+  if (missed != points.weight.end()) {
+    const Vec3& p = samples[static_cast<std::size_t>(missed - points.weight.begin())].point;
     throw InputError(fmt::format(
         "{}: no sphere inside comes within {:.4g} mm of the surface at ({:.4g}, {:.4g}, {:.4g}) mm; a larger "
         "fit_error is needed",

@@ -117,13 +117,15 @@ TEST(Restitution, OfEveryShapeOnEverySurface) {
   }
 }
 
-/// A corner of three or five edges on an edge, or between four legs: no axis in common. As they are thrown
-/// here the impulse leans by 1 to 15 degrees and the bodies part sideways with 0.01 to 0.13 m/s and spins of
-/// 5 to 35 rad/s, so the speed along z says nothing of restitution. Other places and turns were not tried.
+/// A corner of three or five edges on an edge, between four legs, or one on the other: no axis in common. As
+/// they are thrown here the impulse leans by 1 to 15 degrees and the bodies part sideways with 0.01 to 0.13
+/// m/s and spins of 5 to 35 rad/s, so the speed along z says nothing of restitution. Other places and turns
+/// were not tried.
 bool lopsided(const Kind& a, const Kind& b) {
   const std::string_view odd = a.name, even = b.name;
   return (odd == "box on corner" || odd == "mesh of 20") &&
-         (even == "box on edge" || even.starts_with("table"));
+         (even == "box on edge" || even.starts_with("table") ||
+          (odd == "box on corner" && even == "mesh of 20"));
 }
 
 /// All three and the finest mesh: EJECTA_ALL_PAIRS=1.
