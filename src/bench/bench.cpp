@@ -7,6 +7,7 @@
 #include "base/parallel.hpp"
 #include "base/stopwatch.hpp"
 #include "bench/bench_dem.hpp"
+#include "bench/bench_grains.hpp"
 #include "bench/bench_jet.hpp"
 #include "case/load.hpp"
 #include "simulation/coupled_model.hpp"
@@ -97,7 +98,8 @@ double least_traffic(const std::string& name) {
 void bench(const BenchOptions& options, const Note& tell) {
   if (options.threads > 0) set_thread_count(options.threads);
   if (!options.only.empty()) {
-    bench_dem(options.only == "settled", tell);
+    if (options.only == "grains") bench_grains(kStandardCase, options.steps, tell);
+    else bench_dem(options.only == "settled", tell);
     return;
   }
   const Case c = parse_case(kStandardCase, "the standard case");
@@ -139,6 +141,7 @@ void bench(const BenchOptions& options, const Note& tell) {
       "in cache.");
   bench_jet(options.steps, tell);
   bench_dem(false, tell);
+  bench_grains(kStandardCase, options.steps, tell);
 }
 
 }  // namespace ejecta

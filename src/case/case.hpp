@@ -41,6 +41,9 @@ enum class Presentation { independent, monolayer, file };
 enum class ParticleForm { box, rock, sphere, cluster, mesh };
 enum class SizeLaw { one, uniform, lognormal, rosin_rammler, sieves };
 enum class WindowRule { fixed, by_size };
+enum class GrainPacking { random, lattice };
+enum class GrainDragLaw { none, stokes, schiller_naumann, di_felice, rong, koch_hill, gidaspow };
+enum class GrainExchange { two_way, one_way };
 enum class StudyDesign { grid, list, latin_hypercube, sobol };
 enum class MapLying { given, turned, any };
 enum class CampaignKind { run, jet, jet_sweep, map, study };
@@ -237,6 +240,35 @@ struct BodySpec {
   double every = 0.0;    ///< s, between the copies
   Vec3 spread{0, 0, 0};  ///< m, edges of the box about `position` in which copies are placed at random
   bool random_rotation = false;  ///< copies are turned at random
+};
+
+/// [[grains]]: many spheres, each far smaller than a cell, that the fluid drags along
+struct GrainsSpec {
+  std::string name;
+  std::string material;
+  std::optional<double> density;  ///< kg/m3, else the material's
+  SizeLaw sizes = SizeLaw::one;   ///< by number
+  double size = 0.0;              ///< m, diameter
+  double size_to = 0.0;           ///< m, upper end of "uniform"
+  double spread = 0.0;            ///< lognormal: standard deviation of ln(size)
+  // How many there are, by one of these:
+  int count = 0;
+  std::optional<double> mass;                 ///< kg
+  std::optional<double> solids_fraction;      ///< of the region's volume
+  std::optional<std::array<Vec3, 2>> region;  ///< m, lower and upper corner; where there is no box: needed
+  GrainPacking packing = GrainPacking::random;
+  Vec3 velocity{0, 0, 0};  ///< m/s, at the start
+  bool held = false;       ///< they stay where they are
+  double from = 0.0;       ///< s, not there before
+  double over = 0.0;       ///< s, from then on they come one after the other, evenly
+  std::int64_t seed = 1;   ///< of places and sizes
+};
+
+/// [coupling]: how grains and fluid act on each other
+struct CouplingSpec {
+  GrainDragLaw drag = GrainDragLaw::di_felice;
+  GrainExchange exchange = GrainExchange::two_way;
+  double kernel_width = 3.0;  ///< over which a grain is mapped, in grain diameters
 };
 
 /// [launch]: the free flight from the belt to the jet (paper 2.2.5). The body crosses the jet's axis
@@ -512,6 +544,8 @@ struct Case {
   std::vector<MaterialPairSpec> material_pairs;
   ContactSpec contact;
   std::vector<BodySpec> bodies;
+  std::vector<GrainsSpec> grains;
+  CouplingSpec coupling;
   DomainSpec domain;
   LaunchSpec launch;
   std::vector<WallSpec> walls;

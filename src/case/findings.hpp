@@ -30,6 +30,7 @@ void sense_states(const Case&, Findings&);
 void sense_materials(const Case&, Findings&);
 void sense_shapes(const Case&, Findings&);
 void sense_motion(const Case&, Findings&);
+void sense_grains(const Case&, Findings&);
 void sense_domain(const Case&, Findings&);
 void sense_overlaps(const Case&, Findings&);
 void sense_walls(const Case&, Findings&);

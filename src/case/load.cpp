@@ -35,12 +35,28 @@ std::set<std::string> sections_of(const std::vector<Problem>& problems) {
   return names;
 }
 
+/// Grains that leave through a periodic side of the box come back on the other, as the fluid does.
+void join_periodic_sides(Case& c) {
+  const auto box = grid_box(c);
+  if (c.grains.empty() || !c.bodies.empty() || c.flow.solver == FlowSolver::none || !box) return;
+  std::vector<double>* extents[] = {&c.domain.x, &c.domain.y, &c.domain.z};
+  for (int a = 0; a < 3; ++a) {
+    const std::string name(1, "xyz"[a]);
+    std::vector<double>& extent = *extents[a];
+    if (c.boundary[2 * static_cast<std::size_t>(a)].type != BoundaryType::periodic || !extent.empty())
+      continue;
+    extent = {box->low[a], box->high[a]};
+    c.domain.periodic.push_back(name);
+  }
+}
+
 /// What follows from other keys.
 void fill_in(Case& c) {
+  join_periodic_sides(c);
   refine(c.grid, std::exchange(c.grid.refinement, 1.0));
   if (c.fluid.ideal_gas && c.fluid.density == 0.0)
     c.fluid.density = c.environment.pressure / (c.fluid.gas_constant * c.environment.temperature);
-  if (c.materials.empty() && !(c.bodies.empty() && c.walls.empty())) {
+  if (c.materials.empty() && !(c.bodies.empty() && c.walls.empty() && c.grains.empty())) {
     c.materials.emplace_back();  // the paper's
     c.materials.back().name = "ore";
   }
@@ -48,6 +64,13 @@ void fill_in(Case& c) {
     if (b.material.empty()) b.material = c.materials.front().name;
   for (WallSpec& w : c.walls)
     if (w.material.empty()) w.material = c.materials.front().name;
+  for (std::size_t n = 0; n < c.grains.size(); ++n) {
+    GrainsSpec& g = c.grains[n];
+    if (g.material.empty()) g.material = c.materials.front().name;
+    if (g.name.empty()) g.name = fmt::format("grains-{}", n + 1);
+    const auto box = grid_box(c);
+    if (!g.region && box) g.region = {box->low, box->high};
+  }
   for (std::size_t n = 0; n < c.bodies.size(); ++n)
     if (c.bodies[n].name.empty()) c.bodies[n].name = fmt::format("body-{}", n + 1);
   for (std::size_t n = 0; n < c.walls.size(); ++n)

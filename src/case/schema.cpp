@@ -60,6 +60,8 @@ std::vector<Section> sections(Case& c) {
            list("material_pair", "Overrides for the contact of two materials", c.material_pairs),
            table("contact", "How bodies touch", c.contact),
            list("body", "Bodies", c.bodies),
+           list("grains", "Many spheres far smaller than a cell, that the fluid drags along", c.grains),
+           table("coupling", "How grains and fluid act on each other", c.coupling),
            table("domain", "Where bodies live: they go when they leave it", c.domain),
            table("launch", "Flight from the belt to the jet", c.launch, &c.launch.enabled),
            list("wall", "Walls that bodies meet", c.walls),

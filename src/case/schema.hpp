@@ -31,6 +31,8 @@ std::vector<Key> keys(MaterialSpec&);
 std::vector<Key> keys(MaterialPairSpec&);
 std::vector<Key> keys(ContactSpec&);
 std::vector<Key> keys(BodySpec&);
+std::vector<Key> keys(GrainsSpec&);
+std::vector<Key> keys(CouplingSpec&);
 std::vector<Key> keys(DomainSpec&);
 std::vector<Key> keys(LaunchSpec&);
 std::vector<Key> keys(WallSpec&);

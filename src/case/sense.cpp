@@ -13,7 +13,7 @@ struct Part {
   std::vector<std::string> sections;  ///< what it reads
 };
 
-const std::array<Part, 16> parts{{
+const std::array<Part, 17> parts{{
     {sense_run, {"run", "environment", "fluid", "flow", "body", "splitter"}},
     {sense_grid, {"grid"}},
     {sense_boundaries, {"boundary", "environment", "flow", "grid"}},
@@ -21,6 +21,7 @@ const std::array<Part, 16> parts{{
     {sense_materials, {"material", "material_pair", "contact"}},
     {sense_shapes, {"body", "material", "launch", "run"}},
     {sense_motion, {"body", "run"}},
+    {sense_grains, {"grains", "coupling", "material", "grid", "flow"}},
     {sense_domain, {"domain", "flow"}},
     {sense_walls, {"wall", "material"}},
     {sense_sorter,

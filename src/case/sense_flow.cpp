@@ -18,8 +18,8 @@ std::string axis_key(std::size_t a) { return std::string("grid.") + axis_names[a
 }  // namespace
 
 void sense_run(const Case& c, Findings& found) {
-  if (!has_flow(c) && c.bodies.empty())
-    found.error("flow.solver", "neither a flow nor a body: there is nothing to compute",
+  if (!has_flow(c) && c.bodies.empty() && c.grains.empty())
+    found.error("flow.solver", "neither a flow nor a body nor grains: there is nothing to compute",
                 "a flow solver, or at least one [[body]]", "solver = \"incompressible\"");
   if (c.run.until != RunUntil::time && c.bodies.empty() && !c.sorter.enabled)
     found.error("run.until", fmt::format("until \"{}\" needs a body", word(c.run.until)),

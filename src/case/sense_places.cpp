@@ -17,17 +17,19 @@ namespace ejecta {
 namespace {
 
 /// What the solver of the case can write.
-std::vector<std::string> field_names(const FlowSpec& flow) {
+std::vector<std::string> field_names(const Case& c) {
+  const FlowSpec& flow = c.flow;
   std::vector<std::string> names{"velocity", "pressure"};
   if (flow.solver != FlowSolver::incompressible) names.push_back("density");
   if (flow.turbulence != TurbulenceModel::laminar)
     names.insert(names.end(), {"k", flow.turbulence == TurbulenceModel::k_epsilon ? "epsilon" : "omega",
                                "eddy_viscosity"});
+  if (!c.grains.empty()) names.insert(names.end(), {"void_fraction", "drag_coefficient"});
   return names;
 }
 
 void check_fields(const Case& c, Findings& found) {
-  const std::vector<std::string> known = field_names(c.flow);
+  const std::vector<std::string> known = field_names(c);
   for (const std::string& name : c.output.fields)
     if (std::find(known.begin(), known.end(), name) == known.end())
       found.error("output.fields", fmt::format("this flow has no field \"{}\"", name),

@@ -167,4 +167,29 @@ const std::vector<Word>& words(WindowRule) {
   return list;
 }
 
+const std::vector<Word>& words(GrainPacking) {
+  static const std::vector<Word> list{
+      {"random", "anywhere but not in each other, one after the other: up to 0.3 of the region"},
+      {"lattice", "face-centred cubic, as near to each other as their number asks: up to 0.74"}};
+  return list;
+}
+
+const std::vector<Word>& words(GrainDragLaw) {
+  static const std::vector<Word> list{
+      {"none", "no drag"},
+      {"stokes", "3 pi mu d: linear, for Re far below 1 (Stokes 1851)"},
+      {"schiller-naumann", "one grain alone (Schiller & Naumann 1935)"},
+      {"di-felice", "grains among others (Di Felice 1994), the paper's"},
+      {"rong", "as Di Felice, with the exponent of Rong, Dong & Yu 2013"},
+      {"koch-hill", "from lattice-Boltzmann simulations (Koch & Hill 2001)"},
+      {"gidaspow", "Ergun below a void fraction of 0.8, Wen & Yu above (Gidaspow 1994)"}};
+  return list;
+}
+
+const std::vector<Word>& words(GrainExchange) {
+  static const std::vector<Word> list{{"two-way", "grains load the fluid and take its room"},
+                                      {"one-way", "grains feel the fluid, which does not notice them"}};
+  return list;
+}
+
 }  // namespace ejecta

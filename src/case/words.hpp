@@ -30,6 +30,9 @@ const std::vector<Word>& words(Presentation);
 const std::vector<Word>& words(ParticleForm);
 const std::vector<Word>& words(SizeLaw);
 const std::vector<Word>& words(WindowRule);
+const std::vector<Word>& words(GrainPacking);
+const std::vector<Word>& words(GrainDragLaw);
+const std::vector<Word>& words(GrainExchange);
 
 /// The word of an enumerator, e.g. "k-omega-sst".
 template <class E>

@@ -44,8 +44,13 @@ double Particles::stable_dt() const {
   for (std::size_t n = 0; n < bodies_.size(); ++n)
     if (presence_[n] == Presence::here) fastest = std::max(fastest, bodies_[n].velocity.norm());
   double time = 1.0;
-  for (const Body& b : bodies_)
-    if (b.motion == Motion::free) time = std::min(time, contact_time(b, materials_, fastest));
+  const Body* last = nullptr;
+  for (const Body& b : bodies_) {
+    if (b.motion != Motion::free) continue;
+    if (last && last->material == b.material && last->mass == b.mass && last->shape.is(b.shape)) continue;
+    time = std::min(time, contact_time(b, materials_, fastest));
+    last = &b;
+  }
   return contact_.time_step_fraction * time;
 }
 

@@ -185,9 +185,12 @@ void Particles::require_apart() {
 
 std::vector<std::string> Particles::deep_dents() const {
   std::vector<std::string> sentences;
+  const std::string* last = nullptr;
   for (std::size_t n = 0; n < bodies_.size(); ++n) {
+    if (last && bodies_[n].name == *last) continue;  // of grains, which share a name, the first
     const double width = bodies_[n].shape.smallest_feature(), share = peaks_[n].overlap / width;
     if (!(share > kDeepDent)) continue;
+    last = &bodies_[n].name;
     sentences.push_back(
         fmt::format("body \"{}\" was dented by {:.3g} mm, {:.0f} % of its smallest width ({:.3g} mm): forces "
                     "of contacts that "

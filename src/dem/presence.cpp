@@ -69,6 +69,9 @@ void Particles::enter_and_leave() {
       continue;
     }
     if (presence_[n] == Presence::gone) continue;
+    if ((b.position.array() >= domain_.low.array()).all() &&
+        (b.position.array() < domain_.high.array()).all())
+      continue;
     const double before = mechanical_energy(n);
     bool out = false, wrapped = false;
     for (int c = 0; c < 3; ++c) {

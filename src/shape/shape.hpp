@@ -61,6 +61,9 @@ class Shape {
   /// m3, of all polytopes: more than the solid's where they cover hollows.
   double parts_volume() const;
 
+  /// Both are copies of one shape.
+  bool is(const Shape& other) const { return data_ == other.data_; }
+
   explicit Shape(std::shared_ptr<const ShapeData> data) : data_(std::move(data)) {}
 
  private:

@@ -25,9 +25,12 @@ bool acts(const Case& c, const std::string& section, std::size_t element, const 
   if (section == "splitter") return c.splitter.enabled && !c.splitter.edge;
   if (section == "material") {
     const std::string& name = c.materials[element].name;
-    return std::any_of(c.bodies.begin(), c.bodies.end(), [&](const BodySpec& b) {
-      return b.motion == Motion::free && b.material == name && !b.density && !b.mass;
-    });
+    return std::any_of(c.bodies.begin(), c.bodies.end(),
+                       [&](const BodySpec& b) {
+                         return b.motion == Motion::free && b.material == name && !b.density && !b.mass;
+                       }) ||
+           std::any_of(c.grains.begin(), c.grains.end(),
+                       [&](const GrainsSpec& g) { return !g.held && g.material == name && !g.density; });
   }
   return true;
 }

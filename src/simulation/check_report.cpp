@@ -135,6 +135,31 @@ std::string body_part(const Case& c, const Company& company, const Grid* grid, s
   return text + "\n";
 }
 
+/// How many grains of each name the scene holds, and what they make up.
+std::string grains_part(const Case& c, const Scene& scene) {
+  std::string text;
+  const auto grains = scene.particles.bodies().subspan(scene.bodies);
+  for (const GrainsSpec& g : c.grains) {
+    std::size_t count = 0;
+    double mass = 0.0, volume = 0.0, least = 1e300, most = 0.0;
+    for (const Body& b : grains) {
+      if (b.name != g.name) continue;
+      ++count;
+      mass += b.mass;
+      volume += b.shape.mass_properties().volume;
+      least = std::min(least, 2 * b.shape.bounding_radius());
+      most = std::max(most, 2 * b.shape.bounding_radius());
+    }
+    text += fmt::format("  grains       \"{}\": {} of {:.4g}{} mm, {:.4g} g{}", g.name, count, 1e3 * least,
+                        most > least ? fmt::format(" to {:.4g}", 1e3 * most) : "", 1e3 * mass,
+                        g.held ? ", held" : "");
+    if (g.region && g.over == 0.0)
+      text += fmt::format(", {:.3g} of their region", volume / ((*g.region)[1] - (*g.region)[0]).prod());
+    text += "\n";
+  }
+  return text;
+}
+
 /// Surfaces from files alone: what stands in the case one sees there.
 std::string wall_part(const Case& c, const WallSpec& w) {
   if (w.kind != WallKind::mesh) return "";
@@ -190,6 +215,7 @@ std::string check_report(const Case& c, const Scene& scene, const std::vector<Pr
   const Splitter* plate = scene.splitter ? &*scene.splitter : nullptr;
   for (std::size_t n = 0; n < all.bodies.size(); ++n)
     text += body_part(all, company, grid ? &*grid : nullptr, n, plate);
+  text += grains_part(c, scene);
   for (const WallSpec& w : c.walls) text += wall_part(c, w);
   text += valve_part(c) + plate_part(c, plate);
   const std::vector<output::Assumption> assumed = assumptions(c);

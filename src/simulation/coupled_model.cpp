@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "base/error.hpp"
 #include "base/state_reader.hpp"
@@ -54,8 +55,8 @@ CoupledModel::CoupledModel(const Case& c, Inflow inflow)
       splitter_(scene_.splitter) {
   air_ = flow_ != nullptr;
   draw_undisturbed(scene_.starts);
-  const std::size_t n = particles_.bodies().size();
-  loads_.resize(n);
+  const std::size_t n = scene_.bodies;
+  loads_.resize(particles_.bodies().size());
   impulse_.assign(n, Vec3::Zero());
   force_sum_.assign(n, Vec3::Zero());
   friction_sum_.assign(n, Vec3::Zero());
@@ -63,7 +64,9 @@ CoupledModel::CoupledModel(const Case& c, Inflow inflow)
   before_.resize(n);
   peak_speed_.assign(n, 0.0);
   if (flow_ && n > 0) coupling_.emplace(grid_, coupling_setup());
-  for (const Body& b : particles_.bodies())
+  if (flow_ && any_grains()) grains_.emplace(case_, grid_, flow_->density(), n);
+  sorted_grains_.resize(case_.grains.size());
+  for (const Body& b : lumps())
     paces_.push_back(b.course ? b.course->pace(case_.run.end_time) : Course::Pace{});
   check_bodies();
   build_step();
@@ -80,8 +83,7 @@ CouplingSetup CoupledModel::coupling_setup() const {
     s.viscosity = case_.fluid.viscosity;
   for (std::size_t d = 0; d < 3; ++d)
     s.periodic[d] = grid_.active(int(d)) && case_.boundary[2 * d].type == BoundaryType::periodic;
-  for (const Body& b : particles_.bodies())
-    s.roughness.push_back(particles_.materials().spec(b.material).roughness);
+  for (const Body& b : lumps()) s.roughness.push_back(particles_.materials().spec(b.material).roughness);
   return s;
 }
 
@@ -102,7 +104,7 @@ void CoupledModel::draw_undisturbed(const std::vector<FlightState>& starts) {
 
 void CoupledModel::check_bodies() const {
   if (!flow_) return;
-  std::vector<Problem> problems = ejecta::check_bodies(case_, grid_, particles_.bodies());
+  std::vector<Problem> problems = ejecta::check_bodies(case_, grid_, lumps());
   std::erase_if(problems, [](const Problem& p) { return p.severity != Severity::error; });
   if (!problems.empty()) throw CaseError(problems);
 }
@@ -111,13 +113,19 @@ void CoupledModel::build_step() {
   if (coupling_)
     step_.push_back(
         {"map.bodies", "what bodies leave of cells and faces, and their walls", [this](double, double) {
-           if (air_) coupling_->map(particles_.bodies(), cut_);
+           if (air_) coupling_->map(lumps(), cut_);
          }});
+  if (grains_)
+    step_.push_back({"map.grains", "1 - e = sum of K V_p / V, drag = sum of K beta (u - v) / V",
+                     [this](double, double dt) {
+                       if (air_) grains_->map(particles_, *flow_, cut_, dt);
+                     }});
   if (flow_)
     step_.push_back({"flow.advance", "one step of the fluid around the bodies (see flow.* below)",
                      [this](double time, double dt) {
                        if (!air_) return;
-                       flow_->advance(time, dt, cut_);
+                       if (grains_) flow_->advance_with_grains(time, dt, cut_, grains_->fraction());
+                       else flow_->advance(time, dt, cut_);
                        ++flow_steps_;
                      }});
   if (coupling_)
@@ -128,29 +136,45 @@ void CoupledModel::build_step() {
                          std::fill(loads_.begin(), loads_.end(), Load{});
                          return;
                        }
-                       coupling_->collect(particles_.bodies(), cut_, dt, loads_);
-                       for (std::size_t b = 0; b < loads_.size(); ++b) impulse_[b] += dt * loads_[b].force;
+                       coupling_->collect(lumps(), cut_, dt, std::span(loads_).first(scene_.bodies));
+                       for (std::size_t b = 0; b < impulse_.size(); ++b) impulse_[b] += dt * loads_[b].force;
                        if (time < case_.stream.average_from) return;
                        averaged_ += dt;
-                       for (std::size_t b = 0; b < loads_.size(); ++b) {
+                       for (std::size_t b = 0; b < impulse_.size(); ++b) {
                          force_sum_[b] += dt * loads_[b].force;
                          friction_sum_[b] += dt * friction(b);
                          torque_sum_[b] += dt * loads_[b].torque;
                        }
                      }});
-  if (!case_.bodies.empty())
+  if (grains_)
+    step_.push_back({"grains.collect", "f = K beta (u - v) + V_p (-grad p + div tau) - rho V_p g",
+                     [this](double time, double dt) {
+                       if (air_) note_bed(time, dt);
+                       if (air_) grains_->collect(particles_, loads_);
+                       else
+                         std::fill(loads_.begin() + static_cast<std::ptrdiff_t>(scene_.bodies), loads_.end(),
+                                   Load{});
+                     }});
+  if (!particles_.bodies().empty())
     step_.push_back({"bodies.advance", "m dV/dt = F_contact + m g + F_fluid, I dw/dt + w x I w = T",
                      [this](double, double dt) {
                        for (std::size_t b = 0; b < before_.size(); ++b)
                          before_[b] = particles_.bodies()[b].position;
+                       if (splitter_ && any_grains()) {
+                         const auto grains = particles_.bodies().subspan(scene_.bodies);
+                         grain_x_.resize(grains.size());
+                         for (std::size_t g = 0; g < grains.size(); ++g) grain_x_[g] = grains[g].position.x();
+                       }
                        particles_.advance(dt, loads_);
                        for (std::size_t b = 0; b < peak_speed_.size(); ++b)
                          peak_speed_[b] = std::max(peak_speed_[b], particles_.bodies()[b].velocity.norm());
                      }});
   if (splitter_)
     step_.push_back(
-        {"splitter.watch", "ejected when the centre passes above the edge",
-         [this](double time, double dt) { splitter_->watch(particles_.bodies(), before_, time + dt, dt); }});
+        {"splitter.watch", "ejected when the centre passes above the edge", [this](double time, double dt) {
+           splitter_->watch(lumps(), before_, time + dt, dt);
+           sort_grains();
+         }});
 }
 
 double CoupledModel::stable_dt(double time) {
@@ -159,6 +183,7 @@ double CoupledModel::stable_dt(double time) {
   if (flow_ && air_) {
     if (!case_.run.time_step) dt = std::min(dt, flow_->stable_dt(time));
     if (coupling_ && !case_.run.time_step) dt = std::min(dt, step_of_bodies(time, dt));
+    if (grains_ && !case_.run.time_step) dt = std::min(dt, step_of_grains());
   } else if (!case_.run.time_step) {
     dt = std::min(dt, kFlightStep);
   }
@@ -171,7 +196,7 @@ double CoupledModel::stable_dt(double time) {
 double CoupledModel::step_of_bodies(double time, double dt) const {
   const double way = 0.5 * case_.run.courant;  // in cells
   double rate = 0.0;                           // 1/s: rate dt + growth dt^2 = way
-  for (std::size_t n = 0; n < loads_.size(); ++n) {
+  for (std::size_t n = 0; n < scene_.bodies; ++n) {
     const Body& b = particles_.bodies()[n];
     const bool waits = time < std::max(b.release_at, b.enters_at.value_or(0.0));
     const bool starts = waits && time + dt > std::max(b.release_at, b.enters_at.value_or(0.0));
@@ -187,6 +212,57 @@ double CoupledModel::step_of_bodies(double time, double dt) const {
     }
   }
   return rate > 0.0 ? way / rate : dt;
+}
+
+/// Grains must not cross half a cell in a step: they are mapped once in it.
+double CoupledModel::step_of_grains() const {
+  Vec3 fastest(0, 0, 0);
+  for (const Body& b : particles_.bodies().subspan(scene_.bodies))
+    fastest = fastest.cwiseMax(b.velocity.cwiseAbs());
+  double rate = 0.0;
+  for (int d = 0; d < 3; ++d)
+    if (grid_.active(d))
+      rate = std::max(rate, fastest[d] / (0.5 * case_.run.courant * grid_.axis(d).smallest()));
+  return rate > 0.0 ? 1.0 / rate : 1e300;
+}
+
+/// Counts grains that came past the edge of the plate in this step, by the height of their centre there.
+void CoupledModel::sort_grains() {
+  const Vec3& edge = splitter_->edge();
+  const auto grains = particles_.bodies().subspan(scene_.bodies);
+  std::size_t group = 0;
+  for (std::size_t g = 0; g < grain_x_.size(); ++g) {
+    const Body& b = grains[g];
+    while (case_.grains[group].name != b.name) group = (group + 1) % case_.grains.size();
+    if (grain_x_[g] < edge.x() && b.position.x() >= edge.x())
+      ++sorted_grains_[group][b.position.z() > edge.z() ? 0 : 1];
+  }
+}
+
+void CoupledModel::note_bed(double time, double dt) {
+  if (time < 0.5 * case_.run.end_time) return;
+  bed_time_ += dt;
+  drop_sum_ += dt * drop().pressure;
+  height_sum_ += dt * grain_sums(particles_, scene_.bodies).centre.z();
+}
+
+PressureDrop CoupledModel::drop() const {
+  const CellField p = flow_->fields().at(1);
+  return pressure_drop(grid_, p.component[0], p.scale);
+}
+
+std::vector<CellField> CoupledModel::air_fields() const {
+  std::vector<CellField> all = flow_->fields();
+  if (grains_)
+    for (CellField& f : grains_->fields()) all.push_back(std::move(f));
+  return all;
+}
+
+std::vector<std::string> CoupledModel::warnings() const {
+  std::vector<std::string> all = particles_.deep_dents();
+  if (grains_)
+    for (std::string& w : grains_->warnings()) all.push_back(std::move(w));
+  return all;
 }
 
 void CoupledModel::advance(const Step& s) {
@@ -211,7 +287,19 @@ void CoupledModel::watch_air(double time) {
     peak_energy_ = std::max(peak_energy_, energy);
     if (time > inflow_.shut_from && energy < kDeadAir * peak_energy_) air_ = false;
   }
-  if (time > inflow_.shut_from && !coupling_->any_inside(particles_.bodies())) air_ = false;
+  if (time > inflow_.shut_from && !coupling_->any_inside(lumps()) && grains_have_left()) air_ = false;
+}
+
+/// But for one in twenty: some whirl on for long where nothing else happens.
+bool CoupledModel::grains_have_left() const {
+  const auto grains = particles_.bodies().subspan(scene_.bodies);
+  const Vec3 low = grid_.lower(), high = grid_.upper();
+  std::size_t inside = 0;
+  for (std::size_t n = 0; n < grains.size(); ++n)
+    inside += particles_.presence(static_cast<int>(scene_.bodies + n)) != Presence::gone &&
+              (grains[n].position.array() >= low.array()).all() &&
+              (grains[n].position.array() <= high.array()).all();
+  return 20 * inside <= grains.size();
 }
 
 /// What is prescribed may be at rest now and fast within the step: its highest speed in the whole run must
@@ -287,7 +375,7 @@ std::vector<OperatorTime> CoupledModel::operator_times() const {
 /// When the last undecided body that flies on should have come to the plate, with half as much again, s.
 std::optional<double> CoupledModel::later_end(double time) const {
   double latest = 0.0;
-  const auto bodies = particles_.bodies();
+  const auto bodies = lumps();
   for (std::size_t b = 0; splitter_ && b < bodies.size(); ++b) {
     if (!splitter_->judges(b) || splitter_->verdict(b)) continue;
     const double way = splitter_->edge().x() - bodies[b].position.x();
@@ -299,11 +387,13 @@ std::optional<double> CoupledModel::later_end(double time) const {
 
 FieldsOnGrid CoupledModel::fields() {
   if (!flow_) return {};
-  return {&grid_, flow_->fields()};
+  return {&grid_, air_fields()};
 }
 
 std::vector<NamedField> CoupledModel::state_fields() {
-  return flow_ ? flow_->state_fields() : std::vector<NamedField>{};
+  std::vector<NamedField> all = flow_ ? flow_->state_fields() : std::vector<NamedField>{};
+  if (grains_) all.push_back({"solids", &grains_->fraction().solids});
+  return all;
 }
 
 StateNumbers CoupledModel::state_numbers() const {
@@ -311,6 +401,7 @@ StateNumbers CoupledModel::state_numbers() const {
   if (flow_) all["air"] = flow_->state_numbers();
   if (coupling_) all["forces"] = coupling_->state();
   if (splitter_) all["verdicts"] = splitter_->state();
+  if (grains_) all["grains"] = grains_->state();
   return all;
 }
 
@@ -319,7 +410,9 @@ std::vector<double> CoupledModel::own_state() const {
   for (const auto* list : {&impulse_, &start_velocity_, &force_sum_, &friction_sum_, &torque_sum_})
     for (const Vec3& v : *list) own.insert(own.end(), {v.x(), v.y(), v.z()});
   own.insert(own.end(), peak_speed_.begin(), peak_speed_.end());
-  for (const Load& l : loads_)
+  if (any_grains()) own.insert(own.end(), {bed_time_, drop_sum_, height_sum_});
+  for (const auto& [above, below] : sorted_grains_) own.insert(own.end(), {double(above), double(below)});
+  for (const Load& l : std::span(loads_).first(scene_.bodies))
     own.insert(own.end(), {l.force.x(), l.force.y(), l.force.z(), l.torque.x(), l.torque.y(), l.torque.z()});
   return own;
 }
@@ -330,6 +423,7 @@ void CoupledModel::restore_numbers(const StateNumbers& numbers, double time) {
   if (flow_) flow_->restore_numbers(numbers_of(numbers, "air"), time);
   if (coupling_) coupling_->restore(numbers_of(numbers, "forces"));
   if (splitter_) splitter_->restore(numbers_of(numbers, "verdicts"));
+  if (grains_) grains_->restore(numbers_of(numbers, "grains"), particles_.bodies().size() - scene_.bodies);
 }
 
 void CoupledModel::restore_own(const std::vector<double>& numbers) {
@@ -340,7 +434,11 @@ void CoupledModel::restore_own(const std::vector<double>& numbers) {
   for (auto* list : {&impulse_, &start_velocity_, &force_sum_, &friction_sum_, &torque_sum_})
     for (Vec3& v : *list) v = own.vec3();
   for (double& v : peak_speed_) v = own.number();
-  for (Load& l : loads_) l.force = own.vec3(), l.torque = own.vec3();
+  if (any_grains())
+    for (double* v : {&bed_time_, &drop_sum_, &height_sum_}) *v = own.number();
+  for (auto& sides : sorted_grains_)
+    for (int& count : sides) count = own.whole(0, std::numeric_limits<int>::max());
+  for (Load& l : std::span(loads_).first(scene_.bodies)) l.force = own.vec3(), l.torque = own.vec3();
   own.end();
 }
 

@@ -9,6 +9,7 @@
 #include "case/case.hpp"
 #include "coupling/resolved/resolved.hpp"
 #include "flow/model/flow_model.hpp"
+#include "simulation/grains_in_flow.hpp"
 #include "simulation/model.hpp"
 #include "simulation/scene.hpp"
 
@@ -40,7 +41,7 @@ class CoupledModel : public Model {
   bool conclude(const std::function<bool()>&, const Note&) override { return true; }
   void require_finite(double time) const override;
   std::int64_t cells() const override { return air_ ? grid_.cells() : 0; }
-  std::size_t bodies() const override { return particles_.bodies().size(); }
+  std::size_t bodies() const override { return scene_.bodies; }
   double courant() const override { return courant_; }
   double busy_until() const override { return busy_until_; }
   std::vector<OperatorTime> operator_times() const override;
@@ -51,7 +52,7 @@ class CoupledModel : public Model {
   nlohmann::ordered_json result(double time, std::int64_t steps, double wall_time,
                                 std::span<const OperatorTime> operators) const override;
   std::optional<double> later_end(double time) const override;
-  std::vector<std::string> warnings() const override { return particles_.deep_dents(); }
+  std::vector<std::string> warnings() const override;
 
   std::vector<Operator>& step() { return step_; }
 
@@ -61,6 +62,24 @@ class CoupledModel : public Model {
   const Inflow& inflow() const { return inflow_; }
   FlowModel* flow() const { return flow_.get(); }
   const Particles& particles() const { return particles_; }
+  /// The bodies that the grid resolves; grains come after them.
+  std::span<const Body> lumps() const { return particles_.bodies().first(scene_.bodies); }
+  std::size_t first_grain() const { return scene_.bodies; }
+  bool any_grains() const { return particles_.bodies().size() > scene_.bodies; }
+  /// Null without grains or without a flow.
+  const GrainsInFlow* grains() const { return grains_ ? &*grains_ : nullptr; }
+  /// Grains that passed above and below the edge of the dividing plate, of each name in the order of the
+  /// case.
+  const std::vector<std::array<int, 2>>& sorted_grains() const { return sorted_grains_; }
+  /// Along z through the box.
+  PressureDrop drop() const;
+  /// The same with the height of the grains' centre of mass, m, mean over the second half of the run.
+  double mean_drop() const { return bed_time_ > 0.0 ? drop_sum_ / bed_time_ : drop().pressure; }
+  std::optional<double> mean_bed_height() const {
+    return bed_time_ > 0.0 ? std::optional(height_sum_ / bed_time_) : std::nullopt;
+  }
+  /// Fields of the flow and of the grains in it.
+  std::vector<CellField> air_fields() const;
   const std::vector<Load>& loads() const { return loads_; }
   const std::optional<Splitter>& splitter() const { return splitter_; }
   const std::vector<Vec3>& impulse() const { return impulse_; }  ///< N s of the fluid on each body
@@ -85,6 +104,10 @@ class CoupledModel : public Model {
   void build_step();
   void watch_air(double time);
   double step_of_courses() const;
+  double step_of_grains() const;
+  void sort_grains();
+  bool grains_have_left() const;
+  void note_bed(double time, double dt);
   double step_of_bodies(double time, double dt) const;
   std::vector<double> own_state() const;
   void restore_own(const std::vector<double>& numbers);
@@ -96,6 +119,10 @@ class CoupledModel : public Model {
   Scene scene_;
   Particles& particles_;
   std::optional<ResolvedCoupling> coupling_;
+  std::optional<GrainsInFlow> grains_;
+  double bed_time_ = 0.0, drop_sum_ = 0.0, height_sum_ = 0.0;
+  std::vector<double> grain_x_;  // m, before the step, where they are sorted
+  std::vector<std::array<int, 2>> sorted_grains_;
   CutCells cut_;
   std::optional<Splitter>& splitter_;
   std::vector<Operator> step_;

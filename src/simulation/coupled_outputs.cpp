@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "base/state_reader.hpp"
+#include "output/vtk_grains.hpp"
 #include "simulation/replay_header.hpp"
 #include "simulation/spacing.hpp"
 
@@ -77,9 +78,10 @@ void CoupledOutputs::open_histories() {
   const auto open = [&](const std::string& name, std::vector<Column> columns) {
     return keep_histories_ ? &histories_.open(name, std::move(columns)) : nullptr;
   };
-  if (keep_histories_ && model_.particles().bodies().size() <= kHistories)
-    for (const Body& b : model_.particles().bodies())
-      bodies_.push_back(open("body-" + b.name, body_columns()));
+  if (keep_histories_ && model_.lumps().size() <= kHistories)
+    for (const Body& b : model_.lumps()) bodies_.push_back(open("body-" + b.name, body_columns()));
+  if (keep_histories_ && model_.any_grains())
+    grains_ = open("grains", grain_columns(model_.flow() != nullptr));
   if (!model_.flow()) {
     energy_ =
         open("ledger",
@@ -105,7 +107,8 @@ void CoupledOutputs::open_fields() {
       air_ = open_series(place_, "air");
       writer_.emplace(model_.grid());
     }
-    if (!model_.particles().bodies().empty()) {
+    if (model_.any_grains()) grains_series_ = open_series(place_, "grains");
+    if (!model_.lumps().empty()) {
       bodies_series_ = open_series(place_, "bodies");
       bodies_writer_.emplace(header_.bodies);
     }
@@ -146,7 +149,7 @@ void CoupledOutputs::update_probes(double time) {
 
 void CoupledOutputs::write_histories(double time) {
   histories_due_.done(time);
-  const auto bodies = model_.particles().bodies();
+  const auto bodies = model_.lumps();
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
     std::array<double, 21> row;
     const Vec3 columns[] = {bodies[b].position,
@@ -160,6 +163,7 @@ void CoupledOutputs::write_histories(double time) {
     bodies_[b]->add(time, row);
   }
   for (Probe& p : probes_) p.write(time);
+  if (grains_) write_grain_history(time);
   if (energy_) {
     const DemEnergy e = model_.particles().energy();
     energy_->add(time, std::array{e.kinetic, e.potential, e.elastic, e.dissipated, e.work});
@@ -167,7 +171,7 @@ void CoupledOutputs::write_histories(double time) {
 }
 
 std::vector<CellField> CoupledOutputs::written_fields() const {
-  std::vector<CellField> fields = model_.flow()->fields();
+  std::vector<CellField> fields = model_.air_fields();
   const std::vector<std::string>& chosen = case_.output.fields;
   if (!chosen.empty())
     std::erase_if(fields, [&](const CellField& f) {
@@ -183,11 +187,12 @@ void CoupledOutputs::write_fields(double time) {
     writer_->write(path, time, written_fields());
     air_->add(time, path);
   }
+  if (grains_series_) write_grains(time);
   if (bodies_series_) {
     std::vector<output::BodyPose> poses;
     output::BodyArray speed{"speed", 1, {}}, velocity{"velocity", 3, {}}, force{"force", 3, {}},
         contact{"contact_force", 3, {}};
-    const auto bodies = model_.particles().bodies();
+    const auto bodies = model_.lumps();
     for (std::size_t b = 0; b < bodies.size(); ++b) {
       poses.push_back(
           {bodies[b].position, bodies[b].orientation, model_.particles().presence(int(b)) == Presence::here});
@@ -204,11 +209,32 @@ void CoupledOutputs::write_fields(double time) {
   }
 }
 
+void CoupledOutputs::write_grain_history(double time) {
+  const GrainSums s = grain_sums(model_.particles(), model_.first_grain());
+  std::vector<double> row{double(s.count), s.mass,         s.centre.x(),   s.centre.y(), s.centre.z(),
+                          s.velocity.x(),  s.velocity.y(), s.velocity.z(), s.height,     s.kinetic_energy};
+  if (model_.flow()) row.push_back(model_.drop().pressure);
+  grains_->add(time, row);
+}
+
+void CoupledOutputs::write_grains(double time) {
+  const auto grains = model_.particles().bodies().subspan(model_.first_grain());
+  const auto loads = std::span(model_.loads()).subspan(model_.first_grain());
+  std::vector<output::GrainPoint> points;
+  for (std::size_t n = 0; n < grains.size(); ++n)
+    if (model_.particles().presence(static_cast<int>(model_.first_grain() + n)) == Presence::here)
+      points.push_back({grains[n].position, 2 * grains[n].shape.bounding_radius(), grains[n].velocity,
+                        loads[n].force, static_cast<std::int64_t>(n)});
+  const auto path = grains_series_->next(".vtp");
+  output::write_grains(path, time, points);
+  grains_series_->add(time, path);
+}
+
 void CoupledOutputs::write_replay(double time) {
   replay_due_.done(time);
   output::ReplayFrame frame;
   frame.time = time;
-  for (const Body& b : model_.particles().bodies())
+  for (const Body& b : model_.lumps())
     frame.bodies.push_back(
         {b.position, b.orientation, model_.particles().presence(int(frame.bodies.size())) == Presence::here});
   if (model_.air())
@@ -248,7 +274,7 @@ void CoupledOutputs::write_lines(double time) {
 void CoupledOutputs::finish(double time) {
   if (time > histories_due_.last()) write_histories(time);
   const Particles& particles = model_.particles();
-  if (!keep_histories_ || !belt_runs(particles)) return;
+  if (!keep_histories_ || !belt_runs(particles) || model_.any_grains()) return;
   output::History& history = histories_.open_anew("spacing", {{"body", "1"},
                                                               {"neighbour", "1"},
                                                               {"x", "m"},

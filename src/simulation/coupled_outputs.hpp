@@ -46,6 +46,8 @@ class CoupledOutputs : public Outputs {
   void write_slices(double time);
   void write_lines(double time);
   void write_replay(double time);
+  void write_grain_history(double time);
+  void write_grains(double time);
   void update_probes(double time);
   std::vector<CellField> written_fields() const;
 
@@ -57,8 +59,8 @@ class CoupledOutputs : public Outputs {
   std::vector<output::History*> bodies_;  ///< of each, or of none
   std::vector<Probe> probes_;
   std::vector<Line> lines_;
-  output::History* energy_ = nullptr;
-  std::optional<output::PvdSeries> air_, bodies_series_;
+  output::History *energy_ = nullptr, *grains_ = nullptr;
+  std::optional<output::PvdSeries> air_, bodies_series_, grains_series_;
   std::vector<output::PvdSeries> slices_;
   std::optional<output::RectilinearWriter> writer_;
   std::optional<output::BodiesWriter> bodies_writer_;

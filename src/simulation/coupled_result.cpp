@@ -158,6 +158,53 @@ void add_round_jet(const CoupledModel& m, double time, Json& result) {
                            {"momentum_variation", jet->momentum_variation}};
 }
 
+/// Grains: how many, where, how fast; what they met; how well sums were kept.
+void add_grain_figures(const CoupledModel& m, Json& result) {
+  if (!m.any_grains()) return;
+  const Case& c = m.config();
+  Json& out = result["grains"];
+  for (std::size_t n = 0; n < c.grains.size(); ++n) {
+    const GrainSums s = grain_sums(m.particles(), m.first_grain(), c.grains[n].name);
+    Json group{{"name", c.grains[n].name},
+               {"count", s.count},
+               {"mass_kg", s.mass},
+               {"mean_position_m", vector_json(s.centre)},
+               {"mean_velocity_m_s", vector_json(s.velocity)},
+               {"height_m", s.height},
+               {"kinetic_energy_J", s.kinetic_energy}};
+    if (m.splitter()) {
+      const auto [above, below] = m.sorted_grains()[n];
+      group["passed_above_plate"] = above;
+      group["passed_below_plate"] = below;
+      if (above + below > 0) group["part_above_plate"] = double(above) / (above + below);
+    }
+    out["groups"].push_back(group);
+  }
+  const GrainsInFlow* grains = m.grains();
+  if (!grains) return;
+  const PressureDrop drop = m.drop();
+  out["pressure_drop_z_Pa"] = drop.pressure;
+  out["mean_pressure_drop_z_Pa"] = m.mean_drop();
+  if (const auto height = m.mean_bed_height()) out["mean_height_of_centre_m"] = *height;
+  out["pressure_gradient_z_Pa_m"] = drop.distance > 0.0 ? drop.pressure / drop.distance : 0.0;
+  out["largest_reynolds"] = grains->largest_reynolds();
+  out["least_void_fraction"] = grains->least_fraction();
+  Vec3 momentum(0, 0, 0), drag(0, 0, 0);
+  double volume = 0.0;
+  const auto bodies = m.particles().bodies();
+  for (std::size_t g = m.first_grain(); g < bodies.size(); ++g) {
+    if (m.particles().presence(static_cast<int>(g)) != Presence::here) continue;
+    momentum += bodies[g].mass * bodies[g].velocity;
+    volume += bodies[g].shape.mass_properties().volume;
+    if (const auto& drags = grains->coupling().drag_forces(); g - m.first_grain() < drags.size())
+      drag += drags[g - m.first_grain()];
+  }
+  out["momentum_N_s"] = vector_json(momentum);
+  out["drag_N"] = vector_json(drag);
+  out["volume_m3"] = volume;
+  out["mapped_volume_m3"] = grains->coupling().mapped_volume(grains->fraction());
+}
+
 }  // namespace
 
 Json CoupledModel::result(double time, std::int64_t steps, double wall_time,
@@ -167,7 +214,7 @@ Json CoupledModel::result(double time, std::int64_t steps, double wall_time,
   Json r;
   r["title"] = c.run.title;
   Json bodies = Json::array();
-  for (std::size_t b = 0; b < m.particles().bodies().size(); ++b) bodies.push_back(body_json(m, b));
+  for (std::size_t b = 0; b < m.lumps().size(); ++b) bodies.push_back(body_json(m, b));
   if (m.splitter()) {
     for (const Json& body : bodies)
       if (body.contains("outcome") && !r.contains("outcome")) r["outcome"] = body["outcome"];
@@ -177,7 +224,8 @@ Json CoupledModel::result(double time, std::int64_t steps, double wall_time,
     if (!c.splitter.edge) r["plate"]["height_above_path_m"] = c.splitter.height;
   }
   if (!bodies.empty()) r["bodies"] = bodies;
-  if (const auto dents = m.particles().deep_dents(); !dents.empty()) r["warnings"] = dents;
+  if (const auto warnings = m.warnings(); !warnings.empty()) r["warnings"] = warnings;
+  add_grain_figures(m, r);
   r["cells"] = m.flow() ? m.grid().cells() : 0;
   r["steps"] = steps;
   r["flow_steps"] = m.flow_steps();
@@ -206,7 +254,7 @@ Json CoupledModel::result(double time, std::int64_t steps, double wall_time,
     r["ledger"]["dissipated_J"] = e.dissipated;
     if (e.dissipated > 0.0) r["ledger"]["kinetic_over_dissipated"] = e.kinetic / e.dissipated;
   }
-  add_spacing(m.particles(), r);
+  if (!m.any_grains()) add_spacing(m.particles(), r);
   add_errors(m, time, r);
   if (!operators.empty()) r["operators"] = operators_json(operators);
   for (const auto& a : assumptions(c))

@@ -41,10 +41,11 @@ Vec3 surface_velocity(const BoundarySpec& face) {
 
 std::vector<Wall> grid_walls(const Case& c, const Grid& grid, const Particles& particles) {
   std::vector<Wall> walls;
-  if (c.bodies.empty() || grid.axisymmetric()) return walls;
+  if ((c.bodies.empty() && c.grains.empty()) || grid.axisymmetric()) return walls;
   // Thick enough that no dent comes near the other side.
   double thickness = 0.0;
   for (const Body& b : particles.bodies()) thickness = std::max(thickness, 2.0 * b.shape.bounding_radius());
+  if (c.bodies.empty()) thickness = 0.1 * (grid.upper() - grid.lower()).minCoeff();
   const Vec3 size = grid.upper() - grid.lower(), middle = 0.5 * (grid.lower() + grid.upper());
   for (int f = 0; f < 6; ++f) {
     const BoundarySpec& face = c.boundary[static_cast<std::size_t>(f)];
@@ -66,7 +67,7 @@ std::vector<Wall> grid_walls(const Case& c, const Grid& grid, const Particles& p
     slab.point = middle;
     slab.point[d] = inward[d] * (at - 0.5 * thickness);
     slab.velocity = surface_velocity(face);
-    slab.material = c.bodies.front().material;
+    slab.material = c.bodies.empty() ? c.grains.front().material : c.bodies.front().material;
     walls.push_back(make_wall(slab, particles.materials(), ""));
   }
   return walls;

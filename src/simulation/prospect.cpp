@@ -108,7 +108,7 @@ Company company_of(const Case& c) {
 }
 
 Company company_of(const Scene& scene) {
-  const auto bodies = scene.particles.bodies();
+  const auto bodies = scene.particles.bodies().first(scene.bodies);
   return {{bodies.begin(), bodies.end()}, scene.starts};
 }
 

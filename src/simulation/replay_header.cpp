@@ -70,7 +70,7 @@ output::ReplayHeader replay_header(const Case& c, const CoupledModel& model) {
     h.rasters.push_back(side_view(c, model.grid()));
     if (const auto above = view_from_above(c, model.grid())) h.rasters.push_back(*above);
   }
-  for (const Body& b : model.particles().bodies())
+  for (const Body& b : model.lumps())
     h.bodies.push_back(
         output::make_body_surface(b.name, b.shape.surface(kChordShare * b.shape.bounding_radius())));
   if (model.splitter())

@@ -6,6 +6,7 @@
 
 #include "base/error.hpp"
 #include "case/copies.hpp"
+#include "dem/grains.hpp"
 #include "dem/walls.hpp"
 #include "flow/model/flow_model.hpp"
 #include "simulation/grid_walls.hpp"
@@ -32,7 +33,9 @@ double undisturbed_height(const Case& c, const Scene& s) {
 
 }  // namespace
 
-Scene make_scene(const Case& c, const Grid* grid) {
+namespace {
+
+Scene scene_of_bodies(const Case& c, const Grid* grid) {
   Scene s{make_particles(c), {}, {}};
   Particles& particles = s.particles;
   if (grid)
@@ -58,6 +61,17 @@ Scene make_scene(const Case& c, const Grid* grid) {
   if (plate.material.empty()) plate.material = c.bodies.front().material;
   particles.add(make_wall(plate, particles.materials(), ""));
   particles.require_apart();
+  return s;
+}
+
+}  // namespace
+
+Scene make_scene(const Case& c, const Grid* grid) {
+  Scene s = scene_of_bodies(c, grid);
+  s.bodies = s.particles.bodies().size();
+  if (c.grains.empty()) return s;
+  add_grains(c, s.particles);
+  s.particles.require_apart();
   return s;
 }
 

@@ -16,6 +16,7 @@ struct Scene {
   Particles particles;
   std::vector<FlightState> starts;  ///< of each body
   std::optional<Splitter> splitter;
+  std::size_t bodies = 0;  ///< of the particles, that are no grains: they come first
 };
 
 /// `c` with its copies written out; `grid` of a case with a flow, else null. Throws InputError for what

@@ -82,7 +82,9 @@ std::vector<std::string> starts() {
                           "[boundary.z_min]\ntype = \"wall\"\n";
   const std::string shock =
       run + "[flow]\nsolver = \"compressible\"\n" + kGrid + kOpen + "[boundary.z_min]\ntype = \"slip\"\n";
-  return {dry, belt, wet + kBodies, jet + kBodies, jet, gas + kBodies, shock};
+  const std::string dusty =
+      wet + "[boundary.z_min]\ntype = \"slip\"\n[[grains]]\nsize = \"0.3 mm\"\ncount = 50\n[coupling]\n";
+  return {dry, belt, wet + kBodies, jet + kBodies, jet, gas + kBodies, shock, dusty};
 }
 
 /// Draws values for a key.

@@ -8,6 +8,10 @@
 
 namespace ejecta {
 
+void FlowModel::advance_with_grains(double, double, CutCells&, FluidFraction&) {
+  throw Error("this solver knows no grains");
+}
+
 Grid make_grid(const Case& c) {
   std::array<Axis, 3> axis;
   for (std::size_t d = 0; d < 3; ++d) {

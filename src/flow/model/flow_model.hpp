@@ -9,6 +9,7 @@
 #include "base/vec.hpp"
 #include "case/case.hpp"
 #include "flow/cut_cells.hpp"
+#include "flow/fluid_fraction.hpp"
 #include "flow/model/inflow.hpp"
 #include "grid/cell_field.hpp"
 #include "grid/grid.hpp"
@@ -31,6 +32,8 @@ class FlowModel {
   virtual double stable_dt(double time) = 0;
   virtual double courant(double dt) const = 0;
   virtual void advance(double time, double dt, CutCells& solids) = 0;
+  /// With grains in it. Throws Error where the solver knows none.
+  virtual void advance_with_grains(double time, double dt, CutCells& solids, FluidFraction& grains);
 
   virtual double density() const = 0;  ///< kg/m3, of the fluid at rest
   virtual std::array<ConstFieldView, 3> velocity() const = 0;

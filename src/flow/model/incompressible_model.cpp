@@ -55,6 +55,17 @@ class IncompressibleModel : public FlowModel {
     last_dt_ = dt;
     resumed_step_ = 0.0;
   }
+  void advance_with_grains(double time, double dt, CutCells& solids, FluidFraction& grains) override {
+    if (!begun_ && last_dt_ == 0.0 && resumed_step_ == 0.0 && solids.empty()) {
+      flow_->set_fraction(grains);  // the grains are part of what there is at the start
+      momentum_at_start_ = flow_->momentum();
+    }
+    begun_ = true;
+    flow_->advance(time, dt, solids, grains);
+    cut_ = &solids;
+    last_dt_ = dt;
+    resumed_step_ = 0.0;
+  }
   double density() const override { return still_.density; }
   std::array<ConstFieldView, 3> velocity() const override { return flow_->velocity(); }
 
@@ -246,6 +257,7 @@ class IncompressibleModel : public FlowModel {
   double resumed_step_ = 0;        ///< s, what the flow allowed when the checkpoint was written
   double resumed_divergence_ = 0;  ///< what it was then
   const CutCells* cut_ = nullptr;  // of the last step
+  bool begun_ = false;             // with grains
 };
 
 }  // namespace

@@ -148,6 +148,7 @@ BoundaryFlow Incompressible::predict(double a, double b, double time, Real dt, C
   move_displaced(kStageWeight * double(dt) *
                  cut_flow_.predict(cut, t, wall_turbulence(), weight * setup_.density));
   for (int c = 0; smoothing_ && c < 3; ++c) smoother_.apply(u_star_[c].view(), {t.old[c], t.a, t.u[c], t.b});
+  if (grains_) drag_cells(b * double(dt));
   return through;
 }
 

@@ -6,9 +6,11 @@
 
 #include "flow/boundary.hpp"
 #include "flow/cut_cells.hpp"
+#include "flow/fluid_fraction.hpp"
 #include "flow/increment_smoother.hpp"
 #include "flow/piso/cut_flow.hpp"
 #include "flow/piso/cut_pressure.hpp"
+#include "flow/piso/fraction_step.hpp"
 #include "flow/piso/momentum.hpp"
 #include "flow/poisson/fast_diagonal.hpp"
 #include "flow/turbulence/two_equation.hpp"
@@ -71,6 +73,9 @@ class Incompressible {
   double try_step(double time, double dt);
   double courant(double dt) const;
   void advance(double time, double dt, CutCells& cut);
+  /// The same with grains in the fluid (model A). Where bodies are in it too, grains drag it but take none of
+  /// its room. Fills the results of `grains`.
+  void advance(double time, double dt, CutCells& cut, FluidFraction& grains);
 
   std::array<ConstFieldView, 3> velocity() const { return {u_[0].view(), u_[1].view(), u_[2].view()}; }
   const Field& velocity_field(int c) const { return u_[static_cast<std::size_t>(c)]; }
@@ -82,6 +87,12 @@ class Incompressible {
   const Grid& grid() const { return grid_; }
 
   double largest_divergence(const CutCells& cut);
+  /// Of grains: N s, what the fluid gave them in the last step by drag, pressure and friction.
+  /// Sums over the fluid count it as a part of the cells from now on.
+  void set_fraction(const FluidFraction& f) { fraction_ = f.acts ? &f : nullptr; }
+  const Vec3& impulse_on_grains() const { return impulse_on_grains_; }
+  /// Iterations of the last pressure equation with grains.
+  int fraction_iterations() const { return fraction_step_ ? fraction_step_->iterations() : 0; }
   Vec3 momentum() const;  ///< kg m/s in the box (axisymmetric: per radian)
   double kinetic_energy() const;
   const FlowTimes& times() const { return times_; }
@@ -94,11 +105,20 @@ class Incompressible {
   void resume(double time) {
     boundaries_.update(time);
     cut_flow_.resume();
+    superficial_ = true;  // where there were grains; else it does not matter
   }
   /// Everything a resume needs.
   std::vector<NamedField> state();
 
  private:
+  void advance_through_grains(double time, double dt, CutCells& cut, FluidFraction& f);
+  BoundaryFlow predict_increment(double time, double h);
+  void make_superficial(FluidFraction& f);
+  void drag_cells(double h);
+  void find_results(FluidFraction& f);
+  void add_friction(FluidFraction& f, double part);
+  void book_grains(const FluidFraction& f, double dt);
+  void book_through(const BoundaryFlow& through, double dt);
   BoundaryFlow predict(double a, double b, double time, Real dt, CutCells& cut, double weight);
   void move_displaced(const Vec3& momentum) { ledger_.displaced += setup_.density * momentum; }
   WallTurbulence wall_turbulence() const;
@@ -128,6 +148,14 @@ class Incompressible {
   double convection_ = -1;                              // largest sum |u| / h, 1/s; negative: not known
   std::vector<BoundaryFlow> boundary_sums_;             // scratch
   double box_volume_ = 0;
+  std::unique_ptr<FractionStep> fraction_step_;  // once there are grains
+  FluidFraction* grains_ = nullptr;              // that drag the fluid in this step
+  const FluidFraction* fraction_ = nullptr;      // of which the fluid is a part since the last step
+  bool superficial_ = false;                     // q_ is that of the fluid times its fraction
+  double fraction_dt_ = 0;
+  Field no_pressure_;
+  std::array<Field, 3> friction_;  // div tau / rho with grains, m/s2
+  Vec3 impulse_on_grains_{0, 0, 0};
   FlowTimes times_;
   FlowLedger ledger_;
 };

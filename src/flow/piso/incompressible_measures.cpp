@@ -141,6 +141,10 @@ double Incompressible::courant(double dt) const {
 }
 
 double Incompressible::largest_divergence(const CutCells& cut) {
+  if (fraction_ && fraction_step_) {
+    fraction_step_->imbalance(*fraction_, fraction_dt_, views(q_), phi_.view());
+    return ejecta::largest_divergence(grid_, std::as_const(*this).views(q_), phi_.view());
+  }
   cut_flow_.close(cut, views(q_));
   divergence(grid_, std::as_const(*this).views(q_), Real(1), phi_.view());
   cut_flow_.reopen(cut, views(q_));
@@ -151,6 +155,16 @@ double Incompressible::largest_divergence(const CutCells& cut) {
 Vec3 Incompressible::momentum() const {
   const Metrics m[3] = {grid_.metrics(0), grid_.metrics(1), grid_.metrics(2)};
   Vec3 sum;
+  if (fraction_) {
+    for (int c = 0; c < 3; ++c)
+      sum[c] = setup_.density *
+               reduce_sum(grid_.range(),
+                          [=, u = u_[c].view(), solids = fraction_->solids.view()](int i, int j, int k) {
+                            return (1.0 - double(solids(i, j, k))) * double(u(i, j, k)) *
+                                   double(m[0].volume[i]) * double(m[1].volume[j]) * double(m[2].volume[k]);
+                          });
+    return sum;
+  }
   for (int c = 0; c < 3; ++c)
     sum[c] = setup_.density * reduce_sum(grid_.range(), [=, u = u_[c].view(), part = cut_flow_.carried()](
                                                             int i, int j, int k) {
@@ -164,6 +178,13 @@ double Incompressible::kinetic_energy() const {
   const Metrics m[3] = {grid_.metrics(0), grid_.metrics(1), grid_.metrics(2)};
   const std::array<ConstFieldView, 3> u = views(u_);
   const ConstFieldView part = cut_flow_.carried();
+  if (fraction_)
+    return 0.5 * setup_.density *
+           reduce_sum(grid_.range(), [=, solids = fraction_->solids.view()](int i, int j, int k) {
+             const double x = u[0](i, j, k), y = u[1](i, j, k), z = u[2](i, j, k);
+             return (1.0 - double(solids(i, j, k))) * (x * x + y * y + z * z) * double(m[0].volume[i]) *
+                    double(m[1].volume[j]) * double(m[2].volume[k]);
+           });
   return 0.5 * setup_.density * reduce_sum(grid_.range(), [=](int i, int j, int k) {
            const double x = u[0](i, j, k), y = u[1](i, j, k), z = u[2](i, j, k);
            return double(part(i, j, k)) * (x * x + y * y + z * z) * double(m[0].volume[i]) *

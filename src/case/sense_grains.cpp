@@ -1,0 +1,187 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "base/text.hpp"
+#include "case/extent.hpp"
+#include "case/findings.hpp"
+#include "case/names.hpp"
+#include "case/words.hpp"
+
+/// Grains: how many, how large, where, and whether the grid and the flow suit them.
+namespace ejecta {
+namespace {
+
+constexpr double kClosePacking = std::numbers::pi / (3 * std::numbers::sqrt2);  // 0.7405
+constexpr double kRandomPacking = 0.3;  // what one after the other still finds a place
+constexpr double kCellsOfGrains = 3.0;  // least width of a cell, in diameters
+constexpr double kWideKernel = 6.0;     // diameters: over several cells of less width
+constexpr double kDilute = 0.01;        // solids: more is not one grain alone
+
+double largest_size(const GrainsSpec& g) { return g.sizes == SizeLaw::uniform ? g.size_to : g.size; }
+
+/// Mean of d^3 over the sizes, m3.
+double mean_cube(const GrainsSpec& g) {
+  const double d = g.size;
+  if (g.sizes == SizeLaw::uniform && g.size_to > d)
+    return (std::pow(g.size_to, 4) - std::pow(d, 4)) / (4 * (g.size_to - d));
+  if (g.sizes == SizeLaw::lognormal) return d * d * d * std::exp(4.5 * g.spread * g.spread);
+  return d * d * d;
+}
+
+void check_sizes_of(const GrainsSpec& g, const std::string& at, Findings& found) {
+  if (g.sizes == SizeLaw::rosin_rammler || g.sizes == SizeLaw::sieves)
+    found.error(at + "sizes", fmt::format("grains are not drawn by \"{}\"", word(g.sizes)),
+                "\"one\", \"uniform\" or \"lognormal\"", "sizes = \"lognormal\"");
+  if (g.sizes == SizeLaw::uniform && !(g.size_to > g.size))
+    found.error(at + "size_to", "the sizes have no upper end above `size`", "a length, more than `size`",
+                "size_to = \"1 mm\"");
+  if (g.sizes == SizeLaw::lognormal && !(g.spread > 0.0))
+    found.error(at + "spread", "sizes that are \"lognormal\" need it", "a number, more than 0",
+                "spread = 0.3");
+}
+
+void check_amount(const GrainsSpec& g, const std::string& at, Findings& found) {
+  const int ways = (g.count > 0) + g.mass.has_value() + g.solids_fraction.has_value();
+  if (ways == 1) return;
+  found.error(at + (ways == 0 ? "count"
+                    : g.mass  ? "mass"
+                              : "solids_fraction"),
+              ways == 0 ? "it is not said how many grains there are"
+                        : "it is said more than once how many grains there are",
+              "one of `count`, `mass` and `solids_fraction`", "count = 10000");
+}
+
+/// Part of the region that is grains.
+double packing_of(const Case& c, const GrainsSpec& g) {
+  if (g.solids_fraction) return *g.solids_fraction;
+  const Vec3 edges = (*g.region)[1] - (*g.region)[0];
+  double density = g.density.value_or(0.0);
+  for (const MaterialSpec& m : c.materials)
+    if (!g.density && (m.name == g.material)) density = m.density;
+  const double volume = g.mass ? *g.mass / density : g.count * std::numbers::pi / 6 * mean_cube(g);
+  return volume / edges.prod();
+}
+
+void check_place(const Case& c, const GrainsSpec& g, const std::string& at, Findings& found) {
+  if (!g.region)
+    return found.error(at + "region", "it is not said where the grains start", "two corners of a box",
+                       R"(region = [["0 mm", "0 mm", "0 mm"], ["10 mm", "10 mm", "5 mm"]])");
+  const Vec3 &low = (*g.region)[0], &high = (*g.region)[1];
+  const double d = largest_size(g);
+  if (!((high - low).minCoeff() >= d * (1 - 1e-9)))
+    return found.error(
+        at + "region",
+        fmt::format("the region is {:.4g} x {:.4g} x {:.4g} mm, grains are {:.4g} mm", 1e3 * (high - low).x(),
+                    1e3 * (high - low).y(), 1e3 * (high - low).z(), 1e3 * d),
+        "the lower and the upper corner, at least a grain apart along each axis");
+  if (const auto box = grid_box(c); box && c.flow.solver != FlowSolver::none)
+    for (int a = 0; a < 3; ++a) {
+      const double slack = 1e-9 * (box->high[a] - box->low[a]);
+      if (low[a] >= box->low[a] - slack && high[a] <= box->high[a] + slack) continue;
+      return found.error(
+          at + "region",
+          fmt::format("grains start outside the box: {:.4g} to {:.4g} mm along {}, the box is "
+                      "{:.4g} to {:.4g} mm",
+                      1e3 * low[a], 1e3 * high[a], "xyz"[a], 1e3 * box -> low[a], 1e3 * box -> high[a]),
+          "a region inside the box, or a larger box");
+    }
+  if (g.over > 0.0) return;  // they go on while others come
+  const double packed = packing_of(c, g);
+  if (packed > kClosePacking)
+    found.error(at + "region",
+                fmt::format("grains would fill {:.3f} of the region: closest packing is {:.3f}", packed,
+                            kClosePacking),
+                "fewer grains or a larger region", "solids_fraction = 0.5");
+  else if (packed > kRandomPacking && g.packing == GrainPacking::random)
+    found.error(at + "packing",
+                fmt::format("grains that fill {:.3f} of the region find no places at random: at most {}",
+                            packed, kRandomPacking),
+                "\"lattice\", or fewer grains", "packing = \"lattice\"");
+}
+
+void check_cells(const Case& c, const GrainsSpec& g, const std::string& at, Findings& found) {
+  double narrowest = 1e300;
+  for (std::size_t a = 0; a < 3; ++a) {
+    const AxisSpec& axis = c.grid.axis[a];
+    const std::vector<double> centres = cell_centres(axis);
+    if (centres.size() < 2) continue;
+    for (const double x : centres) narrowest = std::min(narrowest, widest_cell(axis, x, x));
+  }
+  const double d = largest_size(g), cells = narrowest / d;
+  if (cells >= kCellsOfGrains * (1 - 1e-9) || narrowest > 1e299) return;
+  if (c.coupling.kernel_width >= kWideKernel && cells >= 1.0) return;
+  found.error(
+      at + "size",
+      fmt::format("cells of {:.4g} mm are {:.2f} grains of {:.4g} mm wide: below {:.0f} a grain is no "
+                  "longer small in its cell",
+                  1e3 * narrowest, cells, 1e3 * d, kCellsOfGrains),
+      fmt::format("coarser cells; or grains as [[body]] that the grid resolves (8 cells each); or, down "
+                  "to one grain a cell, a wider kernel: coupling.kernel_width of {:.0f}",
+                  kWideKernel),
+      fmt::format("[coupling] kernel_width = {:.0f}", kWideKernel));
+}
+
+/// Where the flow is periodic, grains have to be.
+void check_periodic_sides(const Case& c, Findings& found) {
+  const auto box = grid_box(c);
+  const std::vector<double>* extents[] = {&c.domain.x, &c.domain.y, &c.domain.z};
+  for (std::size_t a = 0; box && a < 3; ++a) {
+    const int d = static_cast<int>(a);
+    const double size = box->high[d] - box->low[d];
+    const bool joined = std::find(c.domain.periodic.begin(), c.domain.periodic.end(),
+                                  std::string(1, "xyz"[a])) != c.domain.periodic.end();
+    const bool same = extents[a]->size() == 2 && std::abs(extents[a]->front() - box->low[d]) < 1e-9 * size &&
+                      std::abs(extents[a]->back() - box->high[d]) < 1e-9 * size;
+    if (joined != (c.boundary[2 * a].type == BoundaryType::periodic) || (joined && !same))
+      found.error(c.bodies.empty() ? "domain.periodic" : "grains.0",
+                  fmt::format("grains and flow must both be periodic in {}, over the same length: the box is "
+                              "{:.4g} to {:.4g} mm",
+                              "xyz"[a], 1e3 * box -> low[d], 1e3 * box -> high[d]),
+                  "no [domain] along periodic sides of the box; it follows from them", "");
+  }
+}
+
+}  // namespace
+
+void sense_grains(const Case& c, Findings& found) {
+  if (c.grains.empty()) return;
+  check_file_names(c.grains, "grains", found);
+  const bool flows = c.flow.solver != FlowSolver::none;
+  if (flows && !is_incompressible(c))
+    found.error("grains.0", fmt::format("flow.solver \"{}\" does not know grains", word(c.flow.solver)),
+                "an incompressible flow, or none", "[flow] solver = \"incompressible\"");
+  if (flows && c.grid.geometry == Geometry::axisymmetric)
+    found.error("grains.0", "axisymmetric geometry cannot hold grains", "cartesian geometry",
+                "geometry = \"cartesian\"");
+  if (flows) check_periodic_sides(c, found);
+  for (std::size_t n = 0; n < c.grains.size(); ++n) {
+    const GrainsSpec& g = c.grains[n];
+    const std::string at = fmt::format("grains.{}.", n);
+    const std::size_t before = found.list.size();
+    if (!g.material.empty() && std::none_of(c.materials.begin(), c.materials.end(),
+                                            [&](const auto& m) { return m.name == g.material; }))
+      found.error(at + "material", fmt::format("there is no material \"{}\"", g.material),
+                  "a [[material]] of that name", fmt::format("[[material]] name = \"{}\"", g.material));
+    if (g.held && !g.velocity.isZero())
+      found.error(at + "velocity", "`velocity` does nothing here: the grains are held",
+                  "held = false, or no velocity", "held = false");
+    check_sizes_of(g, at, found);
+    check_amount(g, at, found);
+    if (found.list.size() > before) continue;
+    check_place(c, g, at, found);
+    if (flows) check_cells(c, g, at, found);
+    const bool alone =
+        c.coupling.drag == GrainDragLaw::schiller_naumann || c.coupling.drag == GrainDragLaw::stokes;
+    if (flows && alone && g.region && g.over == 0.0 && packing_of(c, g) > kDilute)
+      found.warning("coupling.drag",
+                    fmt::format("\"{}\" is the drag of one grain alone, but grains fill {:.3f} of the region "
+                                "of \"{}\"",
+                                word(c.coupling.drag), packing_of(c, g), g.name),
+                    "the drag of grains among others", "drag = \"di-felice\"");
+  }
+}
+
+}  // namespace ejecta

@@ -1,0 +1,32 @@
+#pragma once
+#include <array>
+
+#include "grid/grid.hpp"
+
+/// What grains smaller than a cell leave of the fluid and how they drag it: the seam between grains and flow.
+/// Coupling fills everything above the line "results"; plain data, SI units.
+namespace ejecta {
+
+struct FluidFraction {
+  explicit FluidFraction(const Grid& grid) {
+    for (Field* f : {&solids_before, &solids, &drag}) *f = grid.make_field();
+    for (auto* group : {&dragging, &seen, &push})
+      for (Field& f : *group) f = grid.make_field();
+  }
+
+  /// Part of each cell that is grains (of the fluid that bodies leave of it), at the beginning and at the end
+  /// of the step: 1 - e, which keeps its digits where grains are few.
+  Field solids_before, solids;
+  /// Drag coefficient of the grains in a cell over its volume and the fluid's density, 1/s, and that times
+  /// the velocity of the grains, m/s2: the fluid gains dragging - drag u.
+  Field drag;
+  std::array<Field, 3> dragging;
+
+  bool acts = true;  ///< on the fluid; false: only the results are wanted
+
+  // Results of the last flow step: what a grain gathers.
+  std::array<Field, 3> seen;  ///< velocity on which the drag acted, m/s
+  std::array<Field, 3> push;  ///< (-grad p + div tau) / rho that acted on the fluid's part of each cell, m/s2
+};
+
+}  // namespace ejecta

@@ -1,0 +1,214 @@
+#include "flow/piso/fraction_step.hpp"
+
+#include <cmath>
+#include <limits>
+
+#include "flow/piso/projection.hpp"
+#include "flow/stencil.hpp"
+
+namespace ejecta {
+namespace {
+
+constexpr Real kLeastFraction = Real(0.05);
+
+EJECTA_KERNEL Real fluid_part(Real solids) {
+  const Real e = Real(1) - solids;
+  return e > kLeastFraction ? e : kLeastFraction;
+}
+
+}  // namespace
+
+FractionStep::FractionStep(const Grid& grid, const Boundaries& boundaries, FastDiagonalPoisson& poisson)
+    : grid_(grid), boundaries_(boundaries), poisson_(grid, boundaries, poisson) {
+  for (auto* group : {&coefficient_, &gain_})
+    for (Field& f : *group) f = grid.make_field();
+  for (Field* f : {&cell_coefficient_, &rhs_, &change_}) *f = grid.make_field();
+  for (int d = 0; d < 3; ++d) {
+    const int n = grid.n(d);
+    const std::size_t size = static_cast<std::size_t>(n + 1 + 2 * kRealLanes);
+    Shares& s = shares_[static_cast<std::size_t>(d)];
+    s.below.assign(size, Real(0));
+    s.low.assign(size, Real(0.5));
+    s.high.assign(size, Real(0.5));
+    if (!grid.active(d)) continue;
+    const auto closed = [&](int side) {
+      const Boundary& b = boundaries[2 * d + side];
+      return b.discs || (b.kind != BoundaryKind::open && b.kind != BoundaryKind::periodic);
+    };
+    const std::size_t last = static_cast<std::size_t>(n) - 1;
+    if (closed(0)) s.low[0] = 0, s.high[0] = 1;
+    if (closed(1)) s.low[last] = 1, s.high[last] = 0;
+    const std::vector<double>& width = grid.axis(d).width;
+    const bool periodic = boundaries[2 * d].kind == BoundaryKind::periodic;
+    for (std::size_t i = 0; i <= last + 1; ++i) {
+      const bool has_low = i > 0 || periodic, has_high = i <= last || periodic;
+      const std::size_t a = i > 0 ? i - 1 : last, b = i <= last ? i : 0;
+      const double low = has_low ? double(s.high[a]) * width[a] : 0.0,
+                   high = has_high ? double(s.low[b]) * width[b] : 0.0;
+      s.below[i] = low + high > 0 ? static_cast<Real>(low / (low + high)) : Real(i > 0);
+    }
+  }
+}
+
+/// q = e (m + h S) / A - c grad p with c = h e^2 / A on the lower D-faces of a row.
+template <int D>
+void FractionStep::predict_faces(const FluidFraction& f, Real h, ConstFieldView m, ConstFieldView p,
+                                 FieldView q, int j, int k) {
+  constexpr std::size_t kD = D;
+  const Metrics metrics = grid_.metrics(D);
+  const std::ptrdiff_t s = stride(p, D);
+  const Real *solids = f.solids.view().row(j, k), *drag = f.drag.view().row(j, k),
+             *dragging = f.dragging[kD].view().row(j, k), *m_row = m.row(j, k), *p_row = p.row(j, k);
+  Real *q_row = q.row(j, k), *c_row = coefficient_[kD].view().row(j, k), *gain = gain_[kD].view().row(j, k);
+  const Real* below = shares_[kD].below.data();
+  for_each_lane(
+      0, grid_.nx() + (D == 0), [=](int i) __attribute__((always_inline)) {
+        const int at = D == 0 ? i : D == 1 ? j : k;
+        const Real w = below[at], v = Real(1) - w;
+        const Real e = fluid_part(w * solids[i - s] + v * solids[i]);
+        const Real a = e + h * (w * drag[i - s] + v * drag[i]);
+        const Real source = h * (w * dragging[i - s] + v * dragging[i]);
+        const Real linear = metrics.weight[at];
+        const Real mean = linear * m_row[i - s] + (Real(1) - linear) * m_row[i];
+        const Real part = e / a, c = h * e * part;
+        c_row[i] = c;
+        q_row[i] = part * (mean + source) - c * (p_row[i] - p_row[i - s]) * metrics.inv_distance[at];
+        gain[i] = -mean;
+      });
+}
+
+/// Cells of a row take the mean of what their D-faces gained.
+template <int D>
+void FractionStep::correct_cells(FluidFraction& f, FieldView u, ConstFieldView p, ConstFieldView q, int j,
+                                 int k) const {
+  constexpr std::size_t kD = D;
+  const Metrics metrics = grid_.metrics(D);
+  const std::ptrdiff_t s = stride(p, D);
+  const Real *solids = f.solids.view().row(j, k), *q_row = q.row(j, k), *p_row = p.row(j, k),
+             *gain = gain_[kD].view().row(j, k);
+  Real *u_row = u.row(j, k), *seen = f.seen[kD].view().row(j, k), *push = f.push[kD].view().row(j, k);
+  const Real *below = shares_[kD].below.data(), *low = shares_[kD].low.data(),
+             *high = shares_[kD].high.data();
+  for_each_lane(
+      0, grid_.nx(), [=](int i) __attribute__((always_inline)) {
+        const int at = D == 0 ? i : D == 1 ? j : k;
+        const Real wl = below[at], wh = below[at + 1];
+        const Real el = fluid_part(wl * solids[i - s] + (Real(1) - wl) * solids[i]),
+                   eh = fluid_part(wh * solids[i] + (Real(1) - wh) * solids[i + s]);
+        const Real a = low[at], b = high[at];
+        u_row[i] =
+            (u_row[i] + a * (q_row[i] + gain[i]) + b * (q_row[i + s] + gain[i + s])) / fluid_part(solids[i]);
+        seen[i] += Real(0.5) * (a * q_row[i] / el + b * q_row[i + s] / eh);
+        push[i] -= Real(0.5) * (a * (p_row[i] - p_row[i - s]) * metrics.inv_distance[at] +
+                                b * (p_row[i + s] - p_row[i]) * metrics.inv_distance[at + 1]);
+      });
+}
+
+/// Faces whose velocity is prescribed, and their coefficient, which is nothing.
+void FractionStep::close_faces(const std::array<FieldView, 3>& q) {
+  boundaries_.prescribe_face_velocity(q);
+  for (int face = 0; face < 6; ++face) {
+    const int d = face / 2;
+    const BoundaryKind kind = boundaries_.kind(face);
+    if (!grid_.active(d) || kind == BoundaryKind::open || kind == BoundaryKind::periodic) continue;
+    Range3 r = grid_.range();
+    const int at = face % 2 ? grid_.n(d) : 0;
+    (d == 0 ? r.i0 : d == 1 ? r.j0 : r.k0) = at;
+    (d == 0 ? r.i1 : d == 1 ? r.j1 : r.k1) = at + 1;
+    const FieldView c = coefficient_[static_cast<std::size_t>(d)].view();
+    for (int k = r.k0; k < r.k1; ++k)
+      for (int j = r.j0; j < r.j1; ++j)
+        for (int i = r.i0; i < r.i1; ++i) c(i, j, k) = 0;
+  }
+  boundaries_.for_each_prescribed([&](int d, const std::array<int, 3>& f, const BoundaryState&) {
+    coefficient_[static_cast<std::size_t>(d)](f[0], f[1], f[2]) = 0;
+  });
+}
+
+void FractionStep::imbalance(const FluidFraction& f, double dt, const std::array<FieldView, 3>& q,
+                             FieldView out) const {
+  divergence(grid_, {q[0], q[1], q[2]}, Real(1), out);
+  const Metrics m[3] = {grid_.metrics(0), grid_.metrics(1), grid_.metrics(2)};
+  const Real inv_dt = static_cast<Real>(1 / dt);
+  for_each_cell(
+      grid_.range(), [=, now = f.solids.view(), before = f.solids_before.view()](int i, int j, int k) {
+        out(i, j, k) -=
+            (now(i, j, k) - before(i, j, k)) * inv_dt * m[0].volume[i] * m[1].volume[j] * m[2].volume[k];
+      });
+}
+
+void FractionStep::project(FluidFraction& f, double h, double dt, const std::array<FieldView, 3>& u,
+                           FieldView p, const std::array<FieldView, 3>& q) {
+  const Metrics m[3] = {grid_.metrics(0), grid_.metrics(1), grid_.metrics(2)};
+  const Real step = static_cast<Real>(h);
+  for (const FieldView& c : u) boundaries_.fill_zero_gradient(c);
+  boundaries_.fill_pressure(p, q, true);
+  for_each_index(grid_.nz() + 1, [&](int k) {
+    for (int j = 0; j <= grid_.ny(); ++j) {
+      if (grid_.active(0) && j < grid_.ny() && k < grid_.nz()) predict_faces<0>(f, step, u[0], p, q[0], j, k);
+      if (grid_.active(1) && k < grid_.nz()) predict_faces<1>(f, step, u[1], p, q[1], j, k);
+      if (grid_.active(2) && j < grid_.ny()) predict_faces<2>(f, step, u[2], p, q[2], j, k);
+    }
+  });
+  close_faces(q);
+  const FieldView cells = cell_coefficient_.view(), rhs = rhs_.view(), change = change_.view();
+  for_each_cell(grid_.range(), [=, solids = f.solids.view(), drag = f.drag.view()](int i, int j, int k) {
+    const Real e = fluid_part(solids(i, j, k));
+    cells(i, j, k) = step * e * e / (e + step * drag(i, j, k));
+  });
+  imbalance(f, dt, q, rhs);
+  // What flows through a cell tells what its balance can mean.
+  const auto area = [&](int d, int i, int j, int k) __attribute__((always_inline)) {
+    return d == 0 ? face_area<0>(m, i, j, k) : d == 1 ? face_area<1>(m, i, j, k) : face_area<2>(m, i, j, k);
+  };
+  double scale = 0;
+  for (int d = 0; d < 3; ++d)
+    if (grid_.active(d))
+      scale += reduce_sum(grid_.range(), [&, v = q[static_cast<std::size_t>(d)]](int i, int j, int k) {
+        const double flow = double(area(d, i, j, k)) * double(v(i, j, k));
+        return flow * flow;
+      });
+  constexpr double kTolerance = std::max(16 * double(std::numeric_limits<Real>::epsilon()), 1e-10);
+  iterations_ = poisson_.solve({coefficient_[0].view(), coefficient_[1].view(), coefficient_[2].view()},
+                               cells, rhs, kTolerance * std::sqrt(scale), q, change);
+  boundaries_.fill_pressure(change, q, false);
+  for_each_index(grid_.nz() + 1, [&](int k) {
+    for (int j = 0; j <= grid_.ny(); ++j)
+      for (int d = 0; d < 3; ++d) {
+        if (!grid_.active(d) || (d != 1 && j == grid_.ny()) || (d != 2 && k == grid_.nz())) continue;
+        const std::size_t e = static_cast<std::size_t>(d);
+        const std::ptrdiff_t s = stride(change, d);
+        const Real *c = coefficient_[e].view().row(j, k), *f_row = change.row(j, k);
+        Real* q_row = q[e].row(j, k);
+        const Metrics metrics = m[d];
+        for_each_lane(0, grid_.nx() + (d == 0), [=](int i) {
+          const int at = d == 0 ? i : d == 1 ? j : k;
+          q_row[i] -= c[i] * (f_row[i] - f_row[i - s]) * metrics.inv_distance[at];
+        });
+      }
+  });
+  boundaries_.prescribe_face_velocity(q);
+  for_each_cell(grid_.range(), [=](int i, int j, int k) { p(i, j, k) += change(i, j, k); });
+  boundaries_.fill_pressure(p, q, true);
+  for_each_index(grid_.nz(), [&](int k) {
+    for (int j = 0; j < grid_.ny(); ++j) {
+      if (grid_.active(0)) correct_cells<0>(f, u[0], p, q[0], j, k);
+      if (grid_.active(1)) correct_cells<1>(f, u[1], p, q[1], j, k);
+      if (grid_.active(2)) correct_cells<2>(f, u[2], p, q[2], j, k);
+    }
+  });
+  // Along an axis of one cell there are no faces.
+  for (std::size_t d = 0; d < 3; ++d) {
+    if (grid_.active(int(d))) continue;
+    for_each_cell(
+        grid_.range(), [=, to = u[d], seen = f.seen[d].view(), solids = f.solids.view(), drag = f.drag.view(),
+                        dragging = f.dragging[d].view()](int i, int j, int k) {
+          const Real v =
+              (to(i, j, k) + step * dragging(i, j, k)) / (fluid_part(solids(i, j, k)) + step * drag(i, j, k));
+          to(i, j, k) = v;
+          seen(i, j, k) += Real(0.5) * v;
+        });
+  }
+}
+
+}  // namespace ejecta

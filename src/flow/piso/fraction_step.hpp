@@ -1,0 +1,58 @@
+#pragma once
+#include <array>
+#include <vector>
+
+#include "flow/boundary.hpp"
+#include "flow/fluid_fraction.hpp"
+#include "flow/piso/variable_poisson.hpp"
+#include "grid/grid.hpp"
+
+namespace ejecta {
+
+/// The end of a stage of the flow with grains in it (paper Eqs 1, 2; model A): pressure and drag, implicit,
+/// so that no loading is too stiff. With e the fluid's fraction, q = e u on faces, m what the fluid's
+/// momentum over density and volume would be without the two,
+///
+///   e u = m + h (S - D u - e grad p)          on faces: q = e (m + h S) / A - (h e^2 / A) grad p, A = e + h
+///   D div q + de/dt = 0                         div((h e^2 / A) grad p) = div(e (m + h S) / A) + de/dt
+///
+/// and cells take the mean of what their faces gained, q - m, so that drag and pressure balance where e
+/// jumps. Averages on faces are those for which the drag that the fluid feels is the sum over cells of volume
+/// (S - D seen): what grains gather is what the fluid lost.
+class FractionStep {
+ public:
+  FractionStep(const Grid& grid, const Boundaries& boundaries, FastDiagonalPoisson& poisson);
+
+  /// m in `u`, which becomes the velocity; p, m2/s2, is the guess and then the pressure; q m/s through whole
+  /// faces. Adds half of this stage's velocity and force to f.seen and f.push. `h`, s: of the stage, `dt` of
+  /// the step. Ghosts of p by `boundaries`.
+  void project(FluidFraction& f, double h, double dt, const std::array<FieldView, 3>& u, FieldView p,
+               const std::array<FieldView, 3>& q);
+  /// div q + de/dt, m3/s
+  void imbalance(const FluidFraction& f, double dt, const std::array<FieldView, 3>& q, FieldView out) const;
+  int iterations() const { return iterations_; }  ///< of the last solution
+
+ private:
+  /// How cells and faces share along an axis.
+  struct Shares {
+    std::vector<Real> below;      // of face i: weight of cell i - 1
+    std::vector<Real> low, high;  // of cell i: weights of its faces i and i + 1
+  };
+  template <int D>
+  void predict_faces(const FluidFraction& f, Real h, ConstFieldView m, ConstFieldView p, FieldView q, int j,
+                     int k);
+  template <int D>
+  void correct_cells(FluidFraction& f, FieldView u, ConstFieldView p, ConstFieldView q, int j, int k) const;
+  void close_faces(const std::array<FieldView, 3>& q);
+
+  const Grid& grid_;
+  const Boundaries& boundaries_;
+  VariablePoisson poisson_;
+  std::array<Shares, 3> shares_;
+  std::array<Field, 3> coefficient_;
+  std::array<Field, 3> gain_;  // q - m of every face
+  Field cell_coefficient_, rhs_, change_;
+  int iterations_ = 0;
+};
+
+}  // namespace ejecta
