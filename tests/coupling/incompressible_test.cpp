@@ -194,7 +194,7 @@ TEST(BodiesInLiquid, NothingCirclesThroughTheOpenEndsOfOneCell) {
   faces[0].kind = faces[1].kind = BoundaryKind::open;
   IncompressibleSetup setup;
   setup.viscosity = 1e-3;
-  for (const double angle : {0.62, 0.4, 0.9}) {
+  for (const double angle : {0.62, 0.4, 0.9, 0.0, 0.05}) {
     Bodies b(Grid(even(-2, 2, 10), even(-0.5, 0.5, 1), even(-1.5, 1.5, 43)), faces, setup,
              {turned(body_of(make_box({1.2, 4, 1.2}), {-2.6, 0, 0}, {1, 0, 0}), angle, Vec3::UnitY())},
              Vec3::Zero());

@@ -29,8 +29,8 @@ void hold_closed(const CutCells& cut, const std::array<FieldView, 3>& q) {
 
 }  // namespace
 
-CutFlow::CutFlow(const Grid& grid, double viscosity)
-    : grid_(grid), nu_(static_cast<Real>(viscosity)), carried_(grid.make_field()) {
+CutFlow::CutFlow(const Grid& grid, double viscosity, const std::array<bool, 6>& passable)
+    : grid_(grid), nu_(static_cast<Real>(viscosity)), passable_(passable), carried_(grid.make_field()) {
   carried_.fill(Real(1));
 }
 
@@ -359,7 +359,22 @@ void CutFlow::extend(const CutCells& cut, const std::array<FieldView, 3>& u,
   for_each_index(static_cast<int>(cut.ghosts.size()), [&](int n) {
     const GhostCell& g = cut.ghosts[static_cast<std::size_t>(n)];
     for (std::size_t e = 0; e < 3; ++e) u[e](g.i, g.j, g.k) = values_[static_cast<std::size_t>(n)][e];
+    const CutCell* small = cut.small_at(g.i, g.j, g.k);
+    if (!small) return;
+    const CutCell& carrier = cut.cells[static_cast<std::size_t>(small->carrier)];
+    const std::array<bool, 3> bound = bound_to_carrier(*small);
+    for (std::size_t e = 0; e < 3; ++e)
+      if (bound[e]) u[e](g.i, g.j, g.k) = u[e](carrier.i, carrier.j, carrier.k);
   });
+}
+
+std::array<bool, 3> CutFlow::bound_to_carrier(const CutCell& small) const {
+  const Cell at{small.i, small.j, small.k};
+  std::array<bool, 3> bound{};
+  for (std::size_t d = 0; d < 3; ++d)
+    bound[d] = (passable_[2 * d] && at[d] == 0) ||
+               (passable_[2 * d + 1] && at[d] + 1 == grid_.n(static_cast<int>(d)));
+  return bound;
 }
 
 void CutFlow::move_small(const CutCells& cut, const std::array<ConstFieldView, 3>& q,

@@ -26,8 +26,9 @@ struct WallTurbulence {
 /// else passes it.
 class CutFlow {
  public:
-  /// viscosity: m2/s, of a gas Pa s.
-  CutFlow(const Grid& grid, double viscosity);
+  /// viscosity: m2/s, of a gas Pa s. `passable`: sides of the box (2 d, 2 d + 1) through which fluid comes
+  /// and goes.
+  CutFlow(const Grid& grid, double viscosity, const std::array<bool, 6>& passable = {});
 
   /// New cells, for a step of dt s: volumes of fluid, and the momentum over density (m4/s) that their change
   /// puts into the sums. p over density moves what gaps thinner than a cell hold; null: nothing does.
@@ -120,8 +121,12 @@ class CutFlow {
                              const std::array<FieldView, 3>& u, const WallTurbulence& turbulence) const;
   /// There only the pressure moves the fluid.
   void push_thin(const CutCells& cut, ConstFieldView p, Real dt);
+  /// Components of a small cell's velocity that are its carrier's: through sides of the box, where both share
+  /// one pressure.
+  std::array<bool, 3> bound_to_carrier(const CutCell& small) const;
   const Grid& grid_;
   Real nu_;
+  std::array<bool, 6> passable_;
   Real step_ = 0;  // s
   Field carried_;
   double solid_volume_ = 0;

@@ -34,6 +34,13 @@ std::array<PoissonBoundary, 6> poisson_boundaries(const std::array<Boundary, 6>&
   return b;
 }
 
+std::array<bool, 6> passable(const std::array<Boundary, 6>& faces) {
+  std::array<bool, 6> p;
+  for (std::size_t f = 0; f < 6; ++f)
+    p[f] = faces[f].kind == BoundaryKind::open || faces[f].kind == BoundaryKind::inflow;
+  return p;
+}
+
 void check_periodic(const Grid& grid, const std::array<Boundary, 6>& faces) {
   for (int d = 0; d < 3; ++d) {
     const bool low = faces[2 * d].kind == BoundaryKind::periodic,
@@ -56,7 +63,7 @@ Incompressible::Incompressible(const Grid& grid, std::array<Boundary, 6> boundar
       setup_(setup),
       boundaries_(grid, boundaries),
       poisson_(grid, poisson_boundaries(boundaries)),
-      cut_flow_(grid, setup.viscosity),
+      cut_flow_(grid, setup.viscosity, passable(boundaries)),
       cut_pressure_(grid, poisson_, poisson_boundaries(boundaries)),
       p_(grid.make_field()),
       phi_(grid.make_field()),
