@@ -122,25 +122,25 @@ void Boundaries::fill_side(const std::array<FieldView, kN>& fields, const Side& 
   const auto fill_row = [&](auto field, int layer, int b, std::ptrdiff_t start) {
     Real* origin = fields[field].origin + start;
     const std::ptrdiff_t out = (layer + 1) * s.outward, in = -(periodic ? n - 1 - layer : layer) * s.outward;
-    const auto set = [ =, &ghost ](int a, int clamped, std::ptrdiff_t cell) __attribute__((always_inline)) {
-      origin[cell + out] = ghost(field, layer, clamped, b, start + cell, origin[cell + in]);
+    const auto set = [ =, &ghost ](int a, std::ptrdiff_t cell) __attribute__((always_inline)) {
+      origin[cell + out] = ghost(field, layer, a, b, start + cell, origin[cell + in]);
     };
-    for (int a = -s.ghosts_a; a < 0; ++a) set(a, 0, a * s.step_a);
+    for (int a = -s.ghosts_a; a < 0; ++a) set(0, a * s.step_a);
     if (s.step_a == 1) {
       for_each_in_lanes(
-          0, s.na, [&](int a) __attribute__((always_inline)) { set(a, a, a); });
+          0, s.na, [&](int a) __attribute__((always_inline)) { set(a, a); });
     } else {
-      for (int a = 0; a < s.na; ++a) set(a, a, a * s.step_a);
+      for (int a = 0; a < s.na; ++a) set(a, a * s.step_a);
     }
-    for (int a = s.na; a < s.na + s.ghosts_a; ++a) set(a, s.na - 1, a * s.step_a);
+    for (int a = s.na; a < s.na + s.ghosts_a; ++a) set(s.na - 1, a * s.step_a);
   };
   for_each_index(s.nb + 2 * s.ghosts_b, [&](int row) {
     const int b = std::clamp(row - s.ghosts_b, 0, s.nb - 1);
     const std::ptrdiff_t start = s.cell(0, row - s.ghosts_b);
-    for (int layer = 0; layer < kGhosts; ++layer) [&]<std::size_t... field>(std::index_sequence<field...>) {
-        (fill_row(std::integral_constant<std::size_t, field>{}, layer, b, start), ...);
-      }
-    (std::make_index_sequence<kN>{});
+    const auto fill_fields = [&]<std::size_t... field>(std::index_sequence<field...>, int layer) {
+      (fill_row(std::integral_constant<std::size_t, field>{}, layer, b, start), ...);
+    };
+    for (int layer = 0; layer < kGhosts; ++layer) fill_fields(std::make_index_sequence<kN>{}, layer);
   });
 }
 
