@@ -86,16 +86,18 @@ Particles belt(int count) {
   });
 }
 
-/// 200 bodies in the waves of a surface of 20,000 triangles of 6 mm, or on a plane.
-Particles on_floor(bool waves, ShapeKind kind) {
+enum class BenchFloor { plane, triangles, waves };
+
+/// 200 bodies on a plane, on 20,000 triangles of 6 mm that lie in it, or in their waves.
+Particles on_floor(BenchFloor floor_kind, ShapeKind kind) {
   constexpr int kCells = 100, kSide = 14;
   constexpr double kWidth = 0.6;  // m
   Particles p = empty_scene({}, Vec3(0, 0, 0));
   const auto height = [&](double x, double y) {
-    return waves ? 5e-3 * (std::sin(40 * x) + std::sin(40 * y)) : 0.0;
+    return floor_kind == BenchFloor::waves ? 5e-3 * (std::sin(40 * x) + std::sin(40 * y)) : 0.0;
   };
   Wall floor;
-  if (waves) {
+  if (floor_kind != BenchFloor::plane) {
     TriangleMesh mesh;
     for (int j = 0; j <= kCells; ++j)
       for (int i = 0; i <= kCells; ++i) {
@@ -108,7 +110,7 @@ Particles on_floor(bool waves, ShapeKind kind) {
         mesh.triangles.push_back({at(i, j), at(i + 1, j), at(i + 1, j + 1)});
         mesh.triangles.push_back({at(i, j), at(i + 1, j + 1), at(i, j + 1)});
       }
-    floor.name = "waves";
+    floor.name = "triangles";
     floor.is_plane = false;
     floor.surface = std::make_shared<Surface>(mesh);
   } else {
@@ -168,11 +170,13 @@ void bench_dem(bool only_settled, const Note& tell) {
   if (only_settled) return;
   measure("10,000 spheres settling", spheres(10000, 2.1), 0, 4000, tell);
   measure("2,000 polyhedra on a belt", belt(2000), 800, 400, tell);
-  for (const bool waves : {false, true}) {
-    const char* floor = waves ? "20,000 triangles in waves" : "a plane";
-    measure(fmt::format("200 balls on {}", floor).c_str(), on_floor(waves, ShapeKind::sphere), 2000, 2000,
+  for (const BenchFloor kind : {BenchFloor::plane, BenchFloor::triangles, BenchFloor::waves}) {
+    const char* floor = kind == BenchFloor::plane       ? "a plane"
+                        : kind == BenchFloor::triangles ? "20,000 flat triangles"
+                                                        : "20,000 triangles in waves";
+    measure(fmt::format("200 balls on {}", floor).c_str(), on_floor(kind, ShapeKind::sphere), 2000, 2000,
             tell);
-    measure(fmt::format("200 boxes on {}", floor).c_str(), on_floor(waves, ShapeKind::box), 1000, 500, tell);
+    measure(fmt::format("200 boxes on {}", floor).c_str(), on_floor(kind, ShapeKind::box), 1000, 500, tell);
   }
   for (const int count : {1000, 10000, 30000, 100000, 300000})
     measure(fmt::format("{} spheres in contact", count).c_str(), spheres(count, 2.0), 200, 200, tell);
