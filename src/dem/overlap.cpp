@@ -142,10 +142,11 @@ Overlap overlap_half_space(const Polytope& a, const Vec3& normal, double offset)
     if (clip(s, {normal, offset})) o.area -= sums.add(s.polygon);
   }
   if (!(sums.volume > 0)) return {};
-  o.area = std::max(o.area.dot(normal), 0.0) * normal;
   o.volume = sums.volume;
   o.centroid = sums.apex + sums.moment / sums.volume;
   o.depth = offset - normal.dot(o.centroid);
+  // What is wholly under the plane has no section with it: that of a prism as deep.
+  o.area = std::max(o.area.dot(normal), 0.5 * o.volume / o.depth) * normal;
   return o;
 }
 

@@ -18,6 +18,7 @@ namespace {
 constexpr int kBodyBlock = 512;   // bodies one thread moves at a time; sums are kept by block
 constexpr double kSlowest = 0.1;  // m/s, impact speed the step is made for at least
 constexpr double kMostPieces = 64.0;
+constexpr double kMostGiven = 0.25;
 constexpr double kSeveralBalls = 2.0;  // contacts a ball has of which only the deepest is looked at
 
 void note_peak(ContactPeaks& p, double overlap, double force_squared, double dt) {
@@ -79,6 +80,22 @@ void Particles::advance(double dt, std::span<const Load> loads) {
     now = next;
   }
   unpack_spheres();
+  require_paid_for();
+}
+
+/// What contacts have given beyond what they took comes from nowhere: of what went through them no more than
+/// the errors of steps.
+void Particles::require_paid_for() const {
+  if (!(-contact_work_ > kMostGiven * exchanged_)) return;
+  const auto fastest = std::max_element(bodies_.begin(), bodies_.end(), [](const Body& a, const Body& b) {
+    return a.velocity.squaredNorm() < b.velocity.squaredNorm();
+  });
+  throw DivergedError(fmt::format(
+      "contacts gave {:.3g} J more than they took; at t = {:.6g} s body \"{}\" moves at {:.4g} m/s. Bodies "
+      "are dented "
+      "deeper than they are thick: try a larger youngs_modulus, or a smaller contact.time_step_fraction (now "
+      "{})",
+      -contact_work_, time_, fastest->name, fastest->velocity.norm(), contact_.time_step_fraction));
 }
 
 int Particles::pieces_of(double step) const {
@@ -395,6 +412,7 @@ void Particles::kick_body(int index, std::span<const Load> loads, double dt, Wor
 
 void Particles::add_work(double dt) {
   contact_work_ += dt * power_.into_contacts;
+  exchanged_ += dt * std::abs(power_.into_contacts);
   outer_work_ += dt * power_.from_outside;
 }
 

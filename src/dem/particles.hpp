@@ -137,6 +137,7 @@ class Particles {
   Dent deepest_in_walls(std::size_t n) const;
   void require_clear(const Dent& dent, const char* when) const;
   [[noreturn]] void throw_diverged() const;
+  void require_paid_for() const;
 
   Vec3 gravity_;
   Materials materials_;
@@ -197,6 +198,7 @@ class Particles {
   std::int64_t lists_ = 0;
   DemTimes times_;
   double contact_work_ = 0.0, outer_work_ = 0.0;  // J
+  double exchanged_ = 0.0;                        // J, that went into contacts and out of them
 };
 
 /// Bodies, materials, walls and contact law of a case. Refuses bodies that overlap and steps that are too

@@ -242,7 +242,8 @@ std::vector<double> Particles::state() const {
                         outer_work_,
                         power_.into_contacts,
                         power_.from_outside,
-                        asked_rate_};
+                        asked_rate_,
+                        exchanged_};
   for (std::size_t n = 0; n < bodies_.size(); ++n) {
     const Body& b = bodies_[n];
     append(s, b.position);
@@ -270,6 +271,7 @@ void Particles::restore(std::span<const double> s) {
   power_.into_contacts = in.number();
   power_.from_outside = in.number();
   asked_rate_ = in.number();
+  exchanged_ = in.number();
   for (std::size_t n = 0; n < bodies_.size(); ++n) {
     Body& b = bodies_[n];
     b.position = in.vec3();
