@@ -41,6 +41,12 @@ void check_sizes_of(const GrainsSpec& g, const std::string& at, Findings& found)
   if (g.sizes == SizeLaw::lognormal && !(g.spread > 0.0))
     found.error(at + "spread", "sizes that are \"lognormal\" need it", "a number, more than 0",
                 "spread = 0.3");
+  if (g.sizes != SizeLaw::uniform && g.size_to > 0.0)
+    found.error(at + "size_to", fmt::format("`size_to` does nothing here: sizes are \"{}\"", word(g.sizes)),
+                "sizes = \"uniform\", or no size_to", "sizes = \"uniform\"");
+  if (g.sizes != SizeLaw::lognormal && g.spread > 0.0)
+    found.error(at + "spread", fmt::format("`spread` does nothing here: sizes are \"{}\"", word(g.sizes)),
+                "sizes = \"lognormal\", or no spread", "sizes = \"lognormal\"");
 }
 
 void check_amount(const GrainsSpec& g, const std::string& at, Findings& found) {
@@ -156,6 +162,9 @@ void sense_grains(const Case& c, Findings& found) {
   if (flows && c.grid.geometry == Geometry::axisymmetric)
     found.error("grains.0", "axisymmetric geometry cannot hold grains", "cartesian geometry",
                 "geometry = \"cartesian\"");
+  if (flows && !(c.fluid.viscosity > 0.0))
+    found.error("fluid.viscosity", "drag laws of grains need a viscosity", "a viscosity, more than 0",
+                "viscosity = \"1.8e-5 Pa s\"");
   if (flows) check_periodic_sides(c, found);
   for (std::size_t n = 0; n < c.grains.size(); ++n) {
     const GrainsSpec& g = c.grains[n];
