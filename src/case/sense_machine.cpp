@@ -66,6 +66,16 @@ void check_sizes(const Case& c, std::size_t n, Findings& found) {
       found.error(at + key, fmt::format("there is no file \"{}\"", beside_case(c, file)),
                   "a file, relative to the folder of the case", example);
   };
+  const auto idle = [&](bool given, const char* key, const char* other) {
+    if (given)
+      found.error(at + key, fmt::format("`{}` does nothing here: it belongs to {}", key, other),
+                  fmt::format("{}, or no {}", other, key), other);
+  };
+  idle(k.sizes != SizeLaw::uniform && k.size_to > 0.0, "size_to", "sizes = \"uniform\"");
+  idle(k.sizes != SizeLaw::lognormal && k.sizes != SizeLaw::rosin_rammler && k.spread > 0.0, "spread",
+       "sizes = \"lognormal\"");
+  idle(!by_sieves && !k.sieves.empty(), "sieves", "sizes = \"sieves\"");
+  idle(k.form != ParticleForm::mesh && !k.file.empty(), "file", "shape = \"mesh\"");
   if (by_sieves) need_file("sieves", k.sieves, "sieves = \"sieves.csv\"");
   if (k.form == ParticleForm::mesh) need_file("file", k.file, "file = \"rock.stl\"");
 }
@@ -121,6 +131,9 @@ void check_devices(const Case& c, Findings& found) {
   if (c.manifold.vessel > 0.0 && !(c.manifold.line_diameter > 0.0))
     found.error("sorter.manifold.line_diameter", "the vessel is fed through nothing", "a length, more than 0",
                 "line_diameter = \"10 mm\"");
+  if (c.feed.presentation != Presentation::file && !c.feed.file.empty())
+    found.error("sorter.feed.file", "`file` does nothing here: it belongs to presentation = \"file\"",
+                "presentation = \"file\", or no file", "presentation = \"file\"");
   if (c.feed.presentation == Presentation::file) {
     std::error_code none;
     if (c.feed.file.empty() || !std::filesystem::is_regular_file(beside_case(c, c.feed.file), none))
