@@ -75,7 +75,7 @@ void check_sizes(const Case& c, std::size_t n, Findings& found) {
   idle(k.sizes != SizeLaw::lognormal && k.sizes != SizeLaw::rosin_rammler && k.spread > 0.0, "spread",
        "sizes = \"lognormal\"");
   idle(!by_sieves && !k.sieves.empty(), "sieves", "sizes = \"sieves\"");
-  idle(k.form != ParticleForm::mesh && !k.file.empty(), "file", "shape = \"mesh\"");
+  idle(k.form != ParticleForm::mesh && !k.file.empty(), "file", "form = \"mesh\"");
   if (by_sieves) need_file("sieves", k.sieves, "sieves = \"sieves.csv\"");
   if (k.form == ParticleForm::mesh) need_file("file", k.file, "file = \"rock.stl\"");
 }
