@@ -51,9 +51,7 @@ class IncompressibleModel : public FlowModel {
   double courant(double dt) const override { return flow_->courant(dt); }
   void advance(double time, double dt, CutCells& solids) override {
     flow_->advance(time, dt, solids);
-    cut_ = &solids;
-    last_dt_ = dt;
-    resumed_step_ = 0.0;
+    note_step(dt, solids);
   }
   void advance_with_grains(double time, double dt, CutCells& solids, FluidFraction& grains) override {
     if (!begun_ && last_dt_ == 0.0 && resumed_step_ == 0.0 && solids.empty()) {
@@ -62,9 +60,7 @@ class IncompressibleModel : public FlowModel {
     }
     begun_ = true;
     flow_->advance(time, dt, solids, grains);
-    cut_ = &solids;
-    last_dt_ = dt;
-    resumed_step_ = 0.0;
+    note_step(dt, solids);
   }
   double density() const override { return still_.density; }
   std::array<ConstFieldView, 3> velocity() const override { return flow_->velocity(); }
@@ -162,6 +158,11 @@ class IncompressibleModel : public FlowModel {
   }
 
  private:
+  void note_step(double dt, CutCells& solids) {
+    cut_ = &solids;
+    last_dt_ = dt;
+    resumed_step_ = 0.0;
+  }
   /// Of the last step: the cut cells to which it belongs are not in a checkpoint.
   double divergence() const { return cut_ ? flow_->largest_divergence(*cut_) : resumed_divergence_; }
   /// What the flow itself allows.

@@ -3,8 +3,10 @@
 #include <cmath>
 #include <limits>
 
+#include "flow/cut_geometry.hpp"
 #include "flow/piso/projection.hpp"
 #include "flow/stencil.hpp"
+#include "grid/faces.hpp"
 
 namespace ejecta {
 namespace {
@@ -111,14 +113,10 @@ void FractionStep::close_faces(const std::array<FieldView, 3>& q) {
     const int d = face / 2;
     const BoundaryKind kind = boundaries_.kind(face);
     if (!grid_.active(d) || kind == BoundaryKind::open || kind == BoundaryKind::periodic) continue;
-    Range3 r = grid_.range();
-    const int at = face % 2 ? grid_.n(d) : 0;
-    (d == 0 ? r.i0 : d == 1 ? r.j0 : r.k0) = at;
-    (d == 0 ? r.i1 : d == 1 ? r.j1 : r.k1) = at + 1;
-    const FieldView c = coefficient_[static_cast<std::size_t>(d)].view();
-    for (int k = r.k0; k < r.k1; ++k)
-      for (int j = r.j0; j < r.j1; ++j)
-        for (int i = r.i0; i < r.i1; ++i) c(i, j, k) = 0;
+    for_each_face_cell(
+        grid_, face, [c = coefficient_[static_cast<std::size_t>(d)].view()](std::size_t, const int(&at)[3]) {
+          c(at[0], at[1], at[2]) = 0;
+        });
   }
   boundaries_.for_each_prescribed([&](int d, const std::array<int, 3>& f, const BoundaryState&) {
     coefficient_[static_cast<std::size_t>(d)](f[0], f[1], f[2]) = 0;
@@ -158,14 +156,11 @@ void FractionStep::project(FluidFraction& f, double h, double dt, const std::arr
   });
   imbalance(f, dt, q, rhs);
   // What flows through a cell tells what its balance can mean.
-  const auto area = [&](int d, int i, int j, int k) __attribute__((always_inline)) {
-    return d == 0 ? face_area<0>(m, i, j, k) : d == 1 ? face_area<1>(m, i, j, k) : face_area<2>(m, i, j, k);
-  };
   double scale = 0;
   for (int d = 0; d < 3; ++d)
     if (grid_.active(d))
       scale += reduce_sum(grid_.range(), [&, v = q[static_cast<std::size_t>(d)]](int i, int j, int k) {
-        const double flow = double(area(d, i, j, k)) * double(v(i, j, k));
+        const double flow = double(face_area_of(grid_.metrics(), d, {i, j, k})) * double(v(i, j, k));
         return flow * flow;
       });
   constexpr double kTolerance = std::max(16 * double(std::numeric_limits<Real>::epsilon()), 1e-10);

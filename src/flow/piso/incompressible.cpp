@@ -16,8 +16,6 @@
 namespace ejecta {
 namespace {
 
-/// What each of the two stages of Heun's method counts in a step.
-constexpr double kStageWeight = 0.5;
 /// What may pass closed faces after a correction, of what would without it. Pressure is incremental: what is
 /// left over is met again in the next correction.
 constexpr double kClosedTolerance = 0.01;
@@ -127,6 +125,18 @@ void Incompressible::evaluate_source(double time) {
   });
 }
 
+/// What every predictor reads and writes: the flow as it is, friction and sources.
+MomentumTerms Incompressible::momentum_terms() {
+  MomentumTerms t;
+  t.u = std::as_const(*this).views(u_);
+  t.face_velocity = std::as_const(*this).views(q_);
+  if (turbulence_) t.eddy_viscosity = turbulence_->eddy_viscosity();
+  if (setup_.source) t.source = std::as_const(*this).views(source_);
+  t.out = views(u_star_);
+  t.viscosity = static_cast<Real>(setup_.viscosity);
+  return t;
+}
+
 /// `weight`: what the friction of this stage counts in the step.
 BoundaryFlow Incompressible::predict(double a, double b, double time, Real dt, CutCells& cut, double weight) {
   {
@@ -136,16 +146,10 @@ BoundaryFlow Incompressible::predict(double a, double b, double time, Real dt, C
     if (setup_.source) evaluate_source(time);
   }
   ScopedTimer timer(times_.momentum);
-  MomentumTerms t;
+  MomentumTerms t = momentum_terms();
   t.old = std::as_const(*this).views(u_old_);
-  t.u = std::as_const(*this).views(u_);
-  t.face_velocity = std::as_const(*this).views(q_);
   t.pressure = p_.view();
-  if (turbulence_) t.eddy_viscosity = turbulence_->eddy_viscosity();
-  if (setup_.source) t.source = std::as_const(*this).views(source_);
-  t.out = views(u_star_);
   for (int c = 0; c < 3; ++c) t.acceleration[c] = static_cast<Real>(setup_.acceleration[c]);
-  t.viscosity = static_cast<Real>(setup_.viscosity);
   t.a = static_cast<Real>(a);
   t.b = static_cast<Real>(b);
   t.dt = dt;

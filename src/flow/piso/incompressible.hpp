@@ -111,6 +111,9 @@ class Incompressible {
   std::vector<NamedField> state();
 
  private:
+  /// What each of the two stages of Heun's method counts in a step.
+  static constexpr double kStageWeight = 0.5;
+  MomentumTerms momentum_terms();
   void advance_through_grains(double time, double dt, CutCells& cut, FluidFraction& f);
   BoundaryFlow predict_increment(double time, double h);
   void make_superficial(FluidFraction& f);

@@ -4,18 +4,13 @@
 #include <utility>
 
 #include "base/stopwatch.hpp"
+#include "flow/cut_geometry.hpp"
 #include "flow/piso/incompressible.hpp"
 #include "flow/piso/momentum.hpp"
 #include "flow/stencil.hpp"
 #include "grid/faces.hpp"
 
 namespace ejecta {
-namespace {
-
-constexpr double kHalf = 0.5;  // what each stage of Heun's method counts
-
-}  // namespace
-
 void Incompressible::advance(double time, double dt, CutCells& cut, FluidFraction& f) {
   if (!fraction_step_) fraction_step_ = std::make_unique<FractionStep>(grid_, boundaries_, poisson_);
   for (auto* group : {&f.seen, &f.push})
@@ -83,7 +78,7 @@ void Incompressible::advance_through_grains(double time, double dt, CutCells& cu
   {
     const BoundaryFlow through = predict_increment(time, dt);
     book_through(through, dt);
-    add_friction(f, kHalf);
+    add_friction(f, kStageWeight);
     ScopedTimer timer(times_.momentum);
     for (std::size_t c = 0; c < 3; ++c) gather(h, c, u_[c].view(), u_[c].view(), Real(1), Real(0));
   }
@@ -95,7 +90,7 @@ void Incompressible::advance_through_grains(double time, double dt, CutCells& cu
     ScopedTimer timer(times_.pressure);
     fraction_step_->project(f, dt, dt, views(u_star_), p_.view(), views(q_));
   }
-  book_pressure(p_.view(), kHalf, dt);
+  book_pressure(p_.view(), kStageWeight, dt);
   std::swap(u_, u_star_);
   std::swap(u_old_, u_star_);
   phi_ = p_;
@@ -103,7 +98,7 @@ void Incompressible::advance_through_grains(double time, double dt, CutCells& cu
   {
     const BoundaryFlow through = predict_increment(time + dt, 0.5 * dt);
     book_through(through, dt);
-    add_friction(f, kHalf);
+    add_friction(f, kStageWeight);
     ScopedTimer timer(times_.momentum);
     for (std::size_t c = 0; c < 3; ++c)
       gather(Real(0.5) * h, c, u_old_[c].view(), u_[c].view(), Real(0.5), Real(0.5));
@@ -112,7 +107,7 @@ void Incompressible::advance_through_grains(double time, double dt, CutCells& cu
     ScopedTimer timer(times_.pressure);
     fraction_step_->project(f, 0.5 * dt, dt, views(u_star_), p_.view(), views(q_));
   }
-  book_pressure(p_.view(), kHalf, dt);
+  book_pressure(p_.view(), kStageWeight, dt);
   std::swap(u_, u_star_);
   for_each_cell(grid_.range(), [p = p_.view(), first = phi_.view()](int i, int j, int k) {
     p(i, j, k) = Real(0.5) * (p(i, j, k) + first(i, j, k));
@@ -136,14 +131,9 @@ BoundaryFlow Incompressible::predict_increment(double time, double h) {
   }
   ScopedTimer timer(times_.momentum);
   if (no_pressure_.size() == 0) no_pressure_ = grid_.make_field();
-  MomentumTerms t;
-  t.old = t.u = std::as_const(*this).views(u_);
-  t.face_velocity = std::as_const(*this).views(q_);
+  MomentumTerms t = momentum_terms();
+  t.old = t.u;
   t.pressure = no_pressure_.view();
-  if (turbulence_) t.eddy_viscosity = turbulence_->eddy_viscosity();
-  if (setup_.source) t.source = std::as_const(*this).views(source_);
-  t.out = views(u_star_);
-  t.viscosity = static_cast<Real>(setup_.viscosity);
   t.a = 0;
   t.b = 1;
   t.dt = static_cast<Real>(h);
@@ -241,27 +231,17 @@ void Incompressible::book_grains(const FluidFraction& f, double dt) {
   ledger_.impulse_on_solids += impulse_on_grains_;
   if (!room) return;
   // What came in must be what the grains made room for.
-  double in = 0.0;
-  const auto through = [&](int d, int at, double sign) {
-    Range3 r = grid_.range();
-    (d == 0 ? r.i0 : d == 1 ? r.j0 : r.k0) = at;
-    (d == 0 ? r.i1 : d == 1 ? r.j1 : r.k1) = at + 1;
-    double net = 0.0;
-    for (int k = r.k0; k < r.k1; ++k)
-      for (int j = r.j0; j < r.j1; ++j)
-        for (int i = r.i0; i < r.i1; ++i) {
-          const Real area = d == 0   ? face_area<0>(m, i, j, k)
-                            : d == 1 ? face_area<1>(m, i, j, k)
-                                     : face_area<2>(m, i, j, k);
-          const double flow = sign * double(area) * double(q_[static_cast<std::size_t>(d)](i, j, k));
-          net += flow;
-          in += std::max(flow, 0.0);
-        }
-    return net;
-  };
-  double net = 0.0;
-  for (int d = 0; d < 3; ++d)
-    if (grid_.active(d)) net += through(d, 0, 1.0) + through(d, grid_.n(d), -1.0);
+  double net = 0.0, in = 0.0;
+  for (int face = 0; face < 6; ++face) {
+    const int d = face / 2;
+    if (!grid_.active(d)) continue;
+    for_each_face_cell(grid_, face, [&, sign = face % 2 ? -1.0 : 1.0](std::size_t, const int(&at)[3]) {
+      const double area = double(face_area_of(grid_.metrics(), d, {at[0], at[1], at[2]}));
+      const double flow = sign * area * double(q_[static_cast<std::size_t>(d)](at[0], at[1], at[2]));
+      net += flow;
+      in += std::max(flow, 0.0);
+    });
+  }
   const double taken = reduce_sum(grid_.range(), [=, before = f.solids_before.view()](int i, int j, int k) {
     return (double(solids(i, j, k)) - double(before(i, j, k))) * double(m[0].volume[i]) *
            double(m[1].volume[j]) * double(m[2].volume[k]);
@@ -273,7 +253,7 @@ void Incompressible::book_grains(const FluidFraction& f, double dt) {
 /// Momentum that crossed the boundaries in half a step.
 void Incompressible::book_through(const BoundaryFlow& through, double dt) {
   ledger_.momentum_through_boundaries +=
-      kHalf * dt * setup_.density * (through.momentum + setup_.acceleration * box_volume_);
+      kStageWeight * dt * setup_.density * (through.momentum + setup_.acceleration * box_volume_);
 }
 
 }  // namespace ejecta
