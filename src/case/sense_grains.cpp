@@ -8,6 +8,7 @@
 #include "case/extent.hpp"
 #include "case/findings.hpp"
 #include "case/names.hpp"
+#include "case/size_law.hpp"
 #include "case/words.hpp"
 
 /// Grains: how many, how large, where, and whether the grid and the flow suit them.
@@ -35,18 +36,7 @@ void check_sizes_of(const GrainsSpec& g, const std::string& at, Findings& found)
   if (g.sizes == SizeLaw::rosin_rammler || g.sizes == SizeLaw::sieves)
     found.error(at + "sizes", fmt::format("grains are not drawn by \"{}\"", word(g.sizes)),
                 "\"one\", \"uniform\" or \"lognormal\"", "sizes = \"lognormal\"");
-  if (g.sizes == SizeLaw::uniform && !(g.size_to > g.size))
-    found.error(at + "size_to", "the sizes have no upper end above `size`", "a length, more than `size`",
-                "size_to = \"1 mm\"");
-  if (g.sizes == SizeLaw::lognormal && !(g.spread > 0.0))
-    found.error(at + "spread", "sizes that are \"lognormal\" need it", "a number, more than 0",
-                "spread = 0.3");
-  if (g.sizes != SizeLaw::uniform && g.size_to > 0.0)
-    found.error(at + "size_to", fmt::format("`size_to` does nothing here: sizes are \"{}\"", word(g.sizes)),
-                "sizes = \"uniform\", or no size_to", "sizes = \"uniform\"");
-  if (g.sizes != SizeLaw::lognormal && g.spread > 0.0)
-    found.error(at + "spread", fmt::format("`spread` does nothing here: sizes are \"{}\"", word(g.sizes)),
-                "sizes = \"lognormal\", or no spread", "sizes = \"lognormal\"");
+  check_size_law(g, at, "1 mm", found);
 }
 
 void check_amount(const GrainsSpec& g, const std::string& at, Findings& found) {

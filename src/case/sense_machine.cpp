@@ -7,6 +7,7 @@
 #include "case/extent.hpp"
 #include "case/findings.hpp"
 #include "case/load.hpp"
+#include "case/size_law.hpp"
 #include "case/words.hpp"
 
 /// [sorter]: whether it is a whole machine, and one that can work. What needs shapes and sizes is checked by
@@ -52,12 +53,7 @@ void check_sizes(const Case& c, std::size_t n, Findings& found) {
                             1e3 * c.sorter.belt_width),
                 "a size below sorter.belt_width",
                 fmt::format("size = \"{:.3g} mm\"", 100.0 * c.sorter.belt_width));
-  if (k.sizes == SizeLaw::uniform && !(k.size_to > k.size))
-    found.error(at + "size_to", "the sizes have no upper end above `size`", "a length, more than `size`",
-                "size_to = \"20 mm\"");
-  if ((k.sizes == SizeLaw::lognormal || k.sizes == SizeLaw::rosin_rammler) && !(k.spread > 0.0))
-    found.error(at + "spread", fmt::format("sizes that are \"{}\" need it", word(k.sizes)),
-                "a number, more than 0", "spread = 0.2");
+  check_size_law(k, at, "20 mm", found);
   const auto need_file = [&](const char* key, const std::string& file, const char* example) {
     std::error_code none;
     if (file.empty())
@@ -71,9 +67,6 @@ void check_sizes(const Case& c, std::size_t n, Findings& found) {
       found.error(at + key, fmt::format("`{}` does nothing here: it belongs to {}", key, other),
                   fmt::format("{}, or no {}", other, key), other);
   };
-  idle(k.sizes != SizeLaw::uniform && k.size_to > 0.0, "size_to", "sizes = \"uniform\"");
-  idle(k.sizes != SizeLaw::lognormal && k.sizes != SizeLaw::rosin_rammler && k.spread > 0.0, "spread",
-       "sizes = \"lognormal\"");
   idle(!by_sieves && !k.sieves.empty(), "sieves", "sizes = \"sieves\"");
   idle(k.form != ParticleForm::mesh && !k.file.empty(), "file", "form = \"mesh\"");
   if (by_sieves) need_file("sieves", k.sieves, "sieves = \"sieves.csv\"");
