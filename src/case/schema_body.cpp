@@ -50,8 +50,9 @@ std::vector<Key> keys(ContactSpec& s) {
            {0.0, 0.5, true},
            "Contact step over the smaller of Rayleigh and Hertz time",
            "usual 0.1 to 0.3"},
-          {"time_step", &s.time_step, time, positive, "Fixed contact step", "", "from time_step_fraction",
-           false, "\"1 us\""},
+          {"time_step", &s.time_step, time, positive,
+           "Fixed contact step; shorter only where bodies would step through each other", "",
+           "from time_step_fraction", false, "\"1 us\""},
           {"allow_tension", &s.allow_tension, none, anything,
            "Let the damped Hertz force pull at the end of a contact; false: clamped at zero, damping "
            "adjusted to keep the restitution",

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <filesystem>
+#include <set>
 
 #include "base/units.hpp"
 #include "case/extent.hpp"
@@ -98,6 +99,45 @@ void check_classes(const Case& c, Findings& found) {
                 "eject = true");
 }
 
+/// Share of the belt's width that the valves may leave without one, or stand beside it, before it is asked
+/// about.
+constexpr double kBesideBelt = 0.2;
+
+void check_manifold(const Case& c, Findings& found) {
+  const ManifoldSpec& m = c.manifold;
+  for (const int valve : m.dead_valves)
+    if (valve >= m.valves)
+      found.error("sorter.manifold.dead_valves",
+                  fmt::format("there is no valve {}: they are 0 to {}", valve, m.valves - 1),
+                  "numbers of valves, from 0", "dead_valves = [12, 13]");
+  if (m.dead * m.valves > m.valves - 0.5)
+    found.error("sorter.manifold.dead", "no valve opens", "a share below 1", "dead = 0.2");
+  if (std::set<int>(m.dead_valves.begin(), m.dead_valves.end()).size() >= static_cast<std::size_t>(m.valves))
+    found.error("sorter.manifold.dead_valves", "no valve opens", "some valves that work",
+                "dead_valves = [12, 13]");
+  const double belt = c.sorter.belt_width, pitch = m.pitch > 0.0 ? m.pitch : belt / m.valves,
+               span = m.valves * pitch;
+  const std::string fits = fmt::format("pitch = \"{:.3g} mm\"", 1e3 * belt / m.valves);
+  if (pitch > belt)
+    found.error("sorter.manifold.pitch",
+                fmt::format("the valves stand {:.4g} mm apart, farther than the belt of {:.4g} mm is wide",
+                            1e3 * pitch, 1e3 * belt),
+                "the belt's width over the number of valves", fits);
+  else if (std::abs(span - belt) > kBesideBelt * belt)
+    found.warning("sorter.manifold.pitch",
+                  fmt::format("{} valves every {:.4g} mm stand along {:.4g} mm, the belt is {:.4g} mm wide",
+                              m.valves, 1e3 * pitch, 1e3 * span, 1e3 * belt),
+                  "valves along the width of the belt", fits);
+  if (pitch < c.valve.orifice_diameter)
+    found.error("sorter.manifold.pitch",
+                fmt::format("valves every {:.4g} mm have no room for orifices of {:.4g} mm", 1e3 * pitch,
+                            1e3 * c.valve.orifice_diameter),
+                "more than valve.orifice_diameter, or fewer valves", fits);
+  if (m.vessel > 0.0 && !(m.line_diameter > 0.0))
+    found.error("sorter.manifold.line_diameter", "the vessel is fed through nothing", "a length, more than 0",
+                "line_diameter = \"10 mm\"");
+}
+
 void check_devices(const Case& c, Findings& found) {
   // All of an object must have passed the camera, and be thought about, before its first command.
   const double v = c.launch.belt_speed, there = c.camera.distance / v;
@@ -116,14 +156,13 @@ void check_devices(const Case& c, Findings& found) {
             format_quantity(there, Dimension::time), format_quantity(needs, Dimension::time)),
         fmt::format("at least {:.3g} mm, or a shorter lead or computing time", 1e3 * needs * v),
         fmt::format("distance = \"{:.0f} mm\"", 1e3 * needs * v + 20.0));
-  for (const int valve : c.manifold.dead_valves)
-    if (valve >= c.manifold.valves)
-      found.error("sorter.manifold.dead_valves",
-                  fmt::format("there is no valve {}: they are 0 to {}", valve, c.manifold.valves - 1),
-                  "numbers of valves, from 0", "dead_valves = [12, 13]");
-  if (c.manifold.vessel > 0.0 && !(c.manifold.line_diameter > 0.0))
-    found.error("sorter.manifold.line_diameter", "the vessel is fed through nothing", "a length, more than 0",
-                "line_diameter = \"10 mm\"");
+  if (c.camera.gap >= c.sorter.belt_width)
+    found.error("sorter.camera.gap",
+                fmt::format("all that lies within {:.4g} mm is one object: the whole belt of {:.4g} mm",
+                            1e3 * c.camera.gap, 1e3 * c.sorter.belt_width),
+                "about two pixels",
+                fmt::format("gap = \"{:.2g} mm\"", 2e3 * c.sorter.belt_width / c.camera.pixels));
+  check_manifold(c, found);
   if (c.feed.presentation != Presentation::file && !c.feed.file.empty())
     found.error("sorter.feed.file", "`file` does nothing here: it belongs to presentation = \"file\"",
                 "presentation = \"file\", or no file", "presentation = \"file\"");

@@ -19,6 +19,7 @@ constexpr int kBodyBlock = 512;   // bodies one thread moves at a time; sums are
 constexpr double kSlowest = 0.1;  // m/s, impact speed the step is made for at least
 constexpr double kMostPieces = 64.0;
 constexpr double kMostGiven = 0.25;
+constexpr double kMostWay = 0.1;       // of the thinnest thing, that two bodies near each other in a sub-step
 constexpr double kSeveralBalls = 2.0;  // contacts a ball has of which only the deepest is looked at
 
 void note_peak(ContactPeaks& p, double overlap, double force_squared, double dt) {
@@ -40,10 +41,16 @@ bool Particles::moves(std::size_t n) const {
 }
 
 double Particles::stable_dt() const {
-  if (contact_.time_step) return *contact_.time_step;
   double fastest = kSlowest;
-  for (std::size_t n = 0; n < bodies_.size(); ++n)
-    if (presence_[n] == Presence::here) fastest = std::max(fastest, bodies_[n].velocity.norm());
+  Farthest<double> way;  // m/s, of any point of a body
+  for (std::size_t n = 0; n < bodies_.size(); ++n) {
+    if (presence_[n] != Presence::here) continue;
+    const double speed = bodies_[n].velocity.norm();
+    fastest = std::max(fastest, speed);
+    way.note(speed + bodies_[n].angular_velocity.norm() * bodies_[n].shape.bounding_radius());
+  }
+  const double longest = kMostWay * thinnest_ / std::max(way.first + way.second, kSlowest);
+  if (contact_.time_step) return std::min(*contact_.time_step, longest);
   double time = 1.0;
   const Body* last = nullptr;
   for (const Body& b : bodies_) {
@@ -52,7 +59,7 @@ double Particles::stable_dt() const {
     time = std::min(time, contact_time(b, materials_, fastest));
     last = &b;
   }
-  return contact_.time_step_fraction * time;
+  return std::min(contact_.time_step_fraction * time, longest);
 }
 
 /// Velocity Verlet (Swope et al. 1982, J. Chem. Phys. 76:637): half a kick, drift, new forces, half a kick.
@@ -310,7 +317,8 @@ void Particles::list_candidates(double dt) {
   }
   // A wider skin costs a look at more pairs in every step, in proportion; a narrower one new lists more
   // often, in inverse proportion. The cheapest, with the factor measured on settling spheres, is
-  skin_ = std::clamp(2.8 * std::sqrt(fastest * dt * smallest_), 0.01 * smallest_, smallest_);
+  const double smallest = bodies_.empty() ? 0.0 : smallest_;
+  skin_ = std::clamp(2.8 * std::sqrt(fastest * dt * smallest), 0.01 * smallest, smallest);
   relist_ = false;
   search_.find(parts_, bodies_, walls_, domain_, skin_, &balls_);
   note_friction();
@@ -367,7 +375,9 @@ void Particles::pass_friction_on() {
 void Particles::collect_solids() {
   solids_.gather([&](int body, const Vec3& force, const Vec3& moment, const Vec3& point, const Touch& touch) {
     const std::size_t n = static_cast<std::size_t>(body);
-    peaks_[n].overlap = std::max(peaks_[n].overlap, touch.thickness > 0 ? touch.thickness : touch.overlap);
+    // Of a part that is swallowed whole the vector area is next to nothing.
+    const double deep = touch.thickness > 0 ? touch.thickness : touch.overlap;
+    peaks_[n].overlap = std::max(peaks_[n].overlap, std::min(deep, 2 * bodies_[n].shape.bounding_radius()));
     const Vec3 centre = packed_[n] ? parts_.sphere_row(body).centre() : bodies_[n].position;
     force_[n] += force;
     torque_[n] += (point - centre).cross(force) + moment;

@@ -1,6 +1,7 @@
 #pragma once
 #include <algorithm>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -62,7 +63,8 @@ class Particles {
   /// on body i and is held constant (empty: none). Bodies enter and leave at its beginning. Throws
   /// DivergedError naming a body whose motion is no number.
   void advance(double dt, std::span<const Load> loads = {});
-  /// The largest sub-step, s: contact.time_step or the stated fraction of the shortest contact time.
+  /// The largest sub-step, s: contact.time_step or the stated fraction of the shortest contact time; less
+  /// where bodies are so fast that they would step through the thinnest of them or of the walls.
   double stable_dt() const;
   double time() const { return time_; }
 
@@ -90,9 +92,9 @@ class Particles {
   /// Throws InputError naming the pair that overlaps most, if by more than a thousandth of its size, or a
   /// body that is to enter where a wall is.
   void require_apart();
-  /// A sentence for each body that has been dented deeper than a tenth of its smallest width: springs stand
-  /// for small dents.
-  std::vector<std::string> deep_dents() const;
+  /// A sentence for each body that has been dented deeper than a tenth of its smallest width (springs stand
+  /// for small dents), and one if bodies that were due have found no place.
+  std::vector<std::string> warnings() const;
 
   /// Everything that changes in time, contact history included: restore() continues to the same bits.
   std::vector<double> state() const;
@@ -118,6 +120,7 @@ class Particles {
   void add_work(double dt);
   void find_contacts(double dt);
   bool moves(std::size_t n) const;
+  void note_size(const Shape& shape);
   void enter_and_leave();
   void show(std::size_t n, Presence presence);
   bool place_is_free(std::size_t n) const;
@@ -192,8 +195,9 @@ class Particles {
   std::vector<Friction> friction_;
   BallContacts balls_;
   SolidContacts solids_;
-  double skin_ = 0.0;      // m, candidates are pairs with gap < skin
-  double smallest_ = 0.0;  // m, of the bounding radii
+  double skin_ = 0.0;                                          // m, candidates are pairs with gap < skin
+  double smallest_ = std::numeric_limits<double>::infinity();  // m, of the bounding radii
+  double thinnest_ = std::numeric_limits<double>::infinity();  // m, of the widths of bodies and walls
   bool relist_ = true;
   std::int64_t lists_ = 0;
   DemTimes times_;

@@ -46,11 +46,15 @@ int Particles::add(Body body) {
   turned_.push_back(0.0);
   parts_.add(body, index);
   parts_.set_here(index, presence_.back() == Presence::here);
-  const double radius = body.shape.bounding_radius();
-  smallest_ = bodies_.empty() ? radius : std::min(smallest_, radius);
+  note_size(body.shape);
   bodies_.push_back(std::move(body));
   relist_ = true;
   return index;
+}
+
+void Particles::note_size(const Shape& shape) {
+  smallest_ = std::min(smallest_, shape.bounding_radius());
+  thinnest_ = std::min(thinnest_, shape.smallest_feature());
 }
 
 void Particles::remove(int index) {
@@ -79,11 +83,12 @@ void Particles::remove(int index) {
   fresh_.erase(fresh_.begin() + index);
   launches_.erase(launches_.begin() + index);
   parts_.clear();
-  smallest_ = std::numeric_limits<double>::infinity();
+  smallest_ = thinnest_ = std::numeric_limits<double>::infinity();
+  for (const Wall& wall : walls_) thinnest_ = std::min(thinnest_, width_polytopes(wall.solids));
   for (std::size_t n = 0; n < bodies_.size(); ++n) {
     parts_.add(bodies_[n], static_cast<int>(n));
     parts_.set_here(static_cast<int>(n), presence_[n] == Presence::here);
-    smallest_ = std::min(smallest_, bodies_[n].shape.bounding_radius());
+    note_size(bodies_[n].shape);
   }
   balls_.rename(ball_names, parts_.ball_count());
   relist_ = true;
@@ -97,6 +102,7 @@ void Particles::add(Wall wall) {
     for (const Surface::Region& r : wall.surface->regions())
       for (const double side : {1.0, -1.0})
         planes_.push_back({side * r.plane.normal, side * r.plane.offset, index});
+  thinnest_ = std::min(thinnest_, width_polytopes(wall.solids));
   walls_.push_back(std::move(wall));
   for (std::size_t n = static_cast<std::size_t>(walls_.back().first_plane); n < planes_.size(); ++n)
     balls_.add(planes_[n], walls_.back());
@@ -183,8 +189,17 @@ void Particles::require_apart() {
                     presence_[n] == Presence::here ? "at the start" : "where it is to enter");
 }
 
-std::vector<std::string> Particles::deep_dents() const {
+std::vector<std::string> Particles::warnings() const {
   std::vector<std::string> sentences;
+  std::size_t kept_out = 0, first = 0;
+  for (std::size_t n = bodies_.size(); n-- > 0;)
+    if (presence_[n] == Presence::waiting && time_ >= *bodies_[n].enters_at) ++kept_out, first = n;
+  if (kept_out > 0)
+    sentences.push_back(fmt::format(
+        "{} never came in: other bodies or walls were in {} place{}",
+        kept_out == 1 ? fmt::format("body \"{}\"", bodies_[first].name)
+                      : fmt::format("{} bodies, the first of them \"{}\",", kept_out, bodies_[first].name),
+        kept_out == 1 ? "its" : "their", kept_out == 1 ? "" : "s"));
   const std::string* last = nullptr;
   for (std::size_t n = 0; n < bodies_.size(); ++n) {
     if (last && bodies_[n].name == *last) continue;  // of grains, which share a name, the first

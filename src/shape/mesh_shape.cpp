@@ -42,12 +42,7 @@ Shape make_polytope_shape(std::vector<Polytope> parts, TriangleMesh surface, con
     v = to_body(data->frame, v);
     data->bounding_radius = std::max(data->bounding_radius, v.norm());
   }
-  data->smallest_feature = 2 * data->bounding_radius;
-  double largest = 0.0;
-  for (const Polytope& p : parts) largest = std::max(largest, volume_polytope(p));
-  for (const Polytope& p : parts)
-    if (volume_polytope(p) > kCrumb * largest)
-      data->smallest_feature = std::min(data->smallest_feature, width_polytope(p));
+  data->smallest_feature = std::min(2 * data->bounding_radius, width_polytopes(parts));
   data->geometry = PolytopesGeometry{std::move(parts), std::move(surface)};
   return Shape(data);
 }

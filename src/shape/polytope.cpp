@@ -155,4 +155,12 @@ double width_polytope(const Polytope& p) {
   return width;
 }
 
+double width_polytopes(std::span<const Polytope> parts) {
+  double largest = 0.0, width = std::numeric_limits<double>::infinity();
+  for (const Polytope& p : parts) largest = std::max(largest, volume_polytope(p));
+  for (const Polytope& p : parts)
+    if (volume_polytope(p) > kCrumb * largest) width = std::min(width, width_polytope(p));
+  return width;
+}
+
 }  // namespace ejecta

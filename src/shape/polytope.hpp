@@ -58,5 +58,9 @@ double volume_polytope(const Polytope& p);                 ///< m3
 double volume_polytopes(std::span<const Polytope> parts);  ///< m3; space that two share counts twice
 /// Smallest distance between two parallel planes that hold the polytope, one of them on a face.
 double width_polytope(const Polytope& p);
+/// Of the largest part: smaller ones are no feature of the solid.
+inline constexpr double kCrumb = 0.05;
+/// Width of the thinnest part that is no crumb; infinite of none. m
+double width_polytopes(std::span<const Polytope> parts);
 
 }  // namespace ejecta

@@ -7,9 +7,6 @@
 
 namespace ejecta {
 
-/// Of the largest part: smaller ones are no feature of the solid.
-inline constexpr double kCrumb = 0.05;
-
 struct BallsGeometry {
   std::vector<Ball> balls;
 };

@@ -259,7 +259,7 @@ std::vector<CellField> CoupledModel::air_fields() const {
 }
 
 std::vector<std::string> CoupledModel::warnings() const {
-  std::vector<std::string> all = particles_.deep_dents();
+  std::vector<std::string> all = particles_.warnings();
   if (grains_)
     for (std::string& w : grains_->warnings()) all.push_back(std::move(w));
   return all;

@@ -27,6 +27,9 @@ Json body_json(const CoupledModel& m, std::size_t b) {
     if (body.shape.balls().empty())
       j["volume_of_parts_over_solid"] = body.shape.parts_volume() / body.shape.mass_properties().volume;
   }
+  const Presence presence = m.particles().presence(static_cast<int>(b));
+  if (presence != Presence::here)
+    j["presence"] = presence == Presence::gone ? "left the domain" : "never came in";
   j["final_position_m"] = vector_json(body.position);
   j["final_velocity_m_s"] = vector_json(body.velocity);
   j["final_spin_rad_s"] = vector_json(body.angular_velocity);

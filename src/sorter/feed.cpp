@@ -21,6 +21,9 @@ constexpr double kCellOverSize = 5.0;  ///< at least this many of the largest pa
 constexpr int kTries = 4000;           ///< to lay a particle where none lies
 /// Random sequential laying of equal squares or discs ends at 0.53 to 0.55 (Feder 1980; Viot & Tarjus 1990).
 constexpr double kMostCover = 0.45;
+constexpr double kLongestRun = 10 * 86400.0;  ///< s, of the belt: even empty cells take time
+
+double belt_carries(const Case& c) { return c.launch.belt_speed * c.sorter.belt_width; }  ///< m2/s
 
 double radius_of(const FeedParticle& p) {
   double most = 0.0;
@@ -271,10 +274,32 @@ std::vector<Problem> check_feed(const Case& c) {
                           .example = fmt::format("size = \"{:.3g} mm\"", 1e4 * pixel)});
   }
   if (!problems.empty()) return problems;
-  double area_per_mass = 0.0;
-  for (const ParticleClass& k : classes) area_per_mass += k.spec().share * k.mean_area() / k.mean_mass();
-  const double belt = c.launch.belt_speed * c.sorter.belt_width,
-               cover = c.sorter.throughput * area_per_mass / belt;
+  double area_per_mass = 0.0, per_mass = 0.0, pixels_seen = 0.0;
+  for (const ParticleClass& k : classes) {
+    area_per_mass += k.spec().share * k.mean_area() / k.mean_mass();
+    per_mass += k.spec().share / k.mean_mass();
+    if (!k.spec().eject || !(k.spec().share > 0.0)) continue;
+    const double grown = k.size_at(0.99) / k.size_at(0.5);
+    pixels_seen = std::max(pixels_seen, k.mean_area() * grown * grown / (pixel * pixel));
+  }
+  if (pixels_seen < c.camera.least_pixels)
+    problems.push_back(
+        {.key = "sorter.camera.least_pixels",
+         .what = fmt::format("nothing that is to be ejected is seen: it covers {:.0f} pixels, what covers "
+                             "fewer than {} is not seen",
+                             pixels_seen, c.camera.least_pixels),
+         .expected = "a small part of that",
+         .example = fmt::format("least_pixels = {:.0f}", std::max(1.0, 0.1 * pixels_seen))});
+  const double runs = c.sorter.particles / (c.sorter.throughput * per_mass);  // s
+  if (runs > kLongestRun && c.feed.presentation != Presentation::file)
+    problems.push_back({.key = "sorter.throughput",
+                        .what = fmt::format("the belt would have to run {:.3g} days to bring {} particles",
+                                            runs / 86400, c.sorter.particles),
+                        .expected = fmt::format("at least {:.2g} t/h, or fewer sorter.particles",
+                                                3.6 * c.sorter.throughput * runs / kLongestRun),
+                        .example = fmt::format("throughput = \"{:.2g} t/h\"",
+                                               3.6 * 0.05 * belt_carries(c) / area_per_mass)});
+  const double belt = belt_carries(c), cover = c.sorter.throughput * area_per_mass / belt;
   const double most = c.feed.presentation == Presentation::monolayer ? kMostCover : 1.0;
   if (cover > most)
     problems.push_back(

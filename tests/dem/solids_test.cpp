@@ -251,5 +251,26 @@ TEST(Collision, MomentumIsConservedAndTheLedgerCloses) {
   EXPECT_GT(p.energy().dissipated, 0.3 * energy);
 }
 
+/// Steps in which things come farther than they are thick are divided: nothing passes through unseen.
+TEST(FastThinThings, MeetEachOther) {
+  MaterialSpec m = stone();
+  m.youngs_modulus = 1e9;
+  m.restitution = 0.5;
+  for (const double speed : {30.0, 100.0})
+    for (const double thickness : {0.2e-3, 1e-3}) {
+      Case c = scene(m);
+      c.contact.time_step_fraction = 0.5;
+      BodySpec sheet = box("sheet", Vec3(20e-3, 20e-3, thickness), Vec3(0, 0, 0));
+      sheet.motion = Motion::fixed;
+      BodySpec plate = box("plate", Vec3(5e-3, 5e-3, thickness), Vec3(0, 0, 8e-3), Vec3(0, 0, -speed));
+      BodySpec small = ball("small", 2e-3, Vec3(7e-3, 7e-3, -9e-3), Vec3(0, 0, speed));
+      c.bodies = {sheet, plate, small};
+      Particles p = make_particles(c);
+      for (int n = 0; n < 40; ++n) p.advance(16e-3 / 20 / speed);
+      EXPECT_NEAR(p.bodies()[1].velocity.z() / speed, 0.5, 0.06) << speed << " m/s, " << thickness << " m";
+      EXPECT_NEAR(p.bodies()[2].velocity.z() / speed, -0.5, 0.06) << speed << " m/s, " << thickness << " m";
+    }
+}
+
 }  // namespace
 }  // namespace ejecta

@@ -127,7 +127,8 @@ TEST(Surface, AnOpenSheetHasOneSideOrTwo) {
 
 /// 10 m/s on a plate that the dent goes through, and on one it does not.
 TEST(Surface, ADentDeeperThanThePlateIsPushedBack) {
-  const Case c = scene(stone());
+  Case c = scene(stone());
+  c.contact.time_step = 5e-6;  // one for all: before a thin plate it would be shorter
   const Materials materials(c);
   double rebound[3];
   int n = 0;
@@ -144,7 +145,7 @@ TEST(Surface, ADentDeeperThanThePlateIsPushedBack) {
     for (int k = 0; k < 30; ++k) p.advance(1e-3);
     rebound[n++] = p.bodies()[0].velocity.z();
     EXPECT_GT(p.peaks(0).overlap, 2e-3);
-    EXPECT_EQ(p.deep_dents().size(), 1u);
+    EXPECT_EQ(p.warnings().size(), 1u);
   }
   EXPECT_NEAR(rebound[0], rebound[2], 1e-6);
   EXPECT_NEAR(rebound[1], rebound[2], 1e-6);
