@@ -200,7 +200,10 @@ Node parse_toml(std::shared_ptr<const Source> source, std::vector<Problem>& prob
   Node empty;
   empty.place = {source, 0, 0};
   if (std::size_t where = 0; nested_too_deeply(source->text, where)) {
-    problems.push_back({.what = "nested too deeply", .place = {source, where, 1}});
+    problems.push_back(
+        {.what = "nested too deeply",
+         .expected = fmt::format("at most {} brackets and {} points in each other", kMaxBrackets, kMaxDots),
+         .place = {source, where, 1}});
     return empty;
   }
   std::string text = source->text;

@@ -87,7 +87,7 @@ Body make_body(const BodySpec& spec, const Materials& materials, const std::stri
         Quat(Eigen::AngleAxisd(angle, spec.rotation_axis.normalized())) * body.shape.frame().rotation;
     return body;
   } catch (const InputError& e) {
-    throw InputError(fmt::format("body \"{}\": {}", spec.name, e.what()));
+    throw InputError(fmt::format("body \"{}\": {}", spec.name, e.what()), e.advice);
   }
 }
 

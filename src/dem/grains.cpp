@@ -18,6 +18,18 @@ constexpr std::uint64_t kSizes = 1, kPlaces = 2;  // streams of random numbers
 constexpr int kTries = 2000;                      // of a grain that looks for its place
 constexpr double kLargestSpread = 3.0;            // standard deviations of a lognormal size
 
+/// The key that says how many there are.
+std::string amount_of(const GrainsSpec& g) {
+  return g.count > 0 ? "count" : g.mass ? "mass" : "solids_fraction";
+}
+
+InputError no_room(const GrainsSpec& g, const std::string& what) {
+  return InputError(fmt::format("grains \"{}\": {}", g.name, what),
+                    {.key = amount_of(g),
+                     .expected = "less of them, or a larger region; as a lattice more find room",
+                     .example = "packing = \"lattice\""});
+}
+
 double volume_of(double d) { return std::numbers::pi / 6 * d * d * d; }
 
 /// The n-th diameter, m.
@@ -74,10 +86,8 @@ std::vector<Vec3> lattice_places(const GrainsSpec& g, std::size_t count, double 
     h[a] = periodic[a] ? edges[a] / n[a] : n[a] > 1 ? (edges[a] - d) / (n[a] - 1) : 1e300;
   const double nearest = std::min({std::hypot(h[0], h[1]), std::hypot(h[1], h[2]), std::hypot(h[0], h[2])});
   if (points(step) < static_cast<double>(count) || nearest < d * (1 - 1e-9))
-    throw InputError(fmt::format(
-        "grains \"{}\": {} of {:.4g} mm do not fit into the region even as a lattice; fewer, or a "
-        "larger region",
-        g.name, count, 1e3 * d));
+    throw no_room(
+        g, fmt::format("{} of {:.4g} mm do not fit into the region even as a lattice", count, 1e3 * d));
   std::vector<Vec3> places;
   for (int k = 0; k < n[2]; ++k)
     for (int j = 0; j < n[1]; ++j)
@@ -91,8 +101,7 @@ std::vector<Vec3> lattice_places(const GrainsSpec& g, std::size_t count, double 
         places.push_back(x);
       }
   if (places.size() < count)
-    throw InputError(fmt::format("grains \"{}\": only {} of {} fit into the region as a lattice", g.name,
-                                 places.size(), count));
+    throw no_room(g, fmt::format("only {} of {} fit into the region as a lattice", places.size(), count));
   return places;
 }
 
@@ -182,7 +191,10 @@ void add_group(const GrainsSpec& g, const Particles& particles, std::vector<Body
   const double density = g.density.value_or(particles.materials().spec(material).density);
   const std::vector<double> sizes = draw_sizes(g, density);
   if (sizes.empty())
-    throw InputError(fmt::format("grains \"{}\": not even one makes up what is asked for", g.name));
+    throw InputError(fmt::format("grains \"{}\": not even one makes up what is asked for", g.name),
+                     {.key = amount_of(g),
+                      .expected = "more of them, or smaller ones",
+                      .example = fmt::format("size = \"{:.2g} mm\"", 1e2 * g.size)});
   const double largest = *std::max_element(sizes.begin(), sizes.end());
   const CounterRandom random(static_cast<std::uint64_t>(g.seed), kPlaces);
   std::vector<Vec3> places;
@@ -204,10 +216,8 @@ void add_group(const GrainsSpec& g, const Particles& particles, std::vector<Body
     for (std::size_t n = 0; n < sizes.size(); ++n) {
       const auto x = room.find(sizes[n], random);
       if (!x)
-        throw InputError(fmt::format(
-            "grains \"{}\": the {}-th of {} finds no place in the region at random after {} tries; "
-            "fewer, a larger region, or packing = \"lattice\"",
-            g.name, n + 1, sizes.size(), kTries));
+        throw no_room(g, fmt::format("number {} of {} finds no place in the region at random after {} tries",
+                                     n + 1, sizes.size(), kTries));
       places.push_back(*x);
     }
   }

@@ -12,20 +12,25 @@
 namespace ejecta {
 namespace {
 
-void require(bool good, const MaterialSpec& m, const char* key, double value, const char* range) {
-  if (!good) throw InputError(fmt::format("material \"{}\": {} = {} must be {}", m.name, key, value, range));
+void require(bool good, const MaterialSpec& m, const char* key, double value, const char* range,
+             const char* example) {
+  if (!good)
+    throw InputError(fmt::format("material \"{}\": {} = {} must be {}", m.name, key, value, range),
+                     {.key = key, .expected = range, .example = fmt::format("{} = {}", key, example)});
 }
 
 void check(const MaterialSpec& m) {
   require(m.youngs_modulus > 0, m, "youngs_modulus", m.youngs_modulus,
           m.friction > 0 ? "positive: friction needs a stiffness (the paper's is 5 MPa)"
-                         : "positive (the paper's is 5 MPa)");
-  require(m.poisson_ratio > -1 && m.poisson_ratio <= 0.5, m, "poisson_ratio", m.poisson_ratio,
-          "in (-1, 0.5]");
-  require(m.density > 0, m, "density", m.density, "positive (quartz: 2700 kg/m3)");
-  require(m.restitution >= 0.01 && m.restitution <= 1, m, "restitution", m.restitution, "in [0.01, 1]");
-  require(m.friction >= 0, m, "friction", m.friction, "zero or positive");
-  require(m.rolling_friction >= 0, m, "rolling_friction", m.rolling_friction, "zero or positive");
+                         : "positive (the paper's is 5 MPa)",
+          "\"5 MPa\"");
+  require(m.poisson_ratio > -1 && m.poisson_ratio <= 0.5, m, "poisson_ratio", m.poisson_ratio, "in (-1, 0.5]",
+          "0.45");
+  require(m.density > 0, m, "density", m.density, "positive (quartz: 2700 kg/m3)", "\"2700 kg/m3\"");
+  require(m.restitution >= 0.01 && m.restitution <= 1, m, "restitution", m.restitution, "in [0.01, 1]",
+          "0.3");
+  require(m.friction >= 0, m, "friction", m.friction, "zero or positive", "0.5");
+  require(m.rolling_friction >= 0, m, "rolling_friction", m.rolling_friction, "zero or positive", "0.05");
 }
 
 double shear_modulus(const MaterialSpec& m) { return m.youngs_modulus / (2 * (1 + m.poisson_ratio)); }

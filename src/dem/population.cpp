@@ -177,7 +177,8 @@ void Particles::require_clear(const Dent& dent, const char* when) const {
       fmt::format("body \"{}\" overlaps {} \"{}\" by {:.4g} mm {}; move it by at least that along ({:.3f}, "
                   "{:.3f}, {:.3f})",
                   bodies_[static_cast<std::size_t>(dent.body)].name, dent.other < 0 ? "wall" : "body", other,
-                  1e3 * dent.overlap, when, dent.normal.x(), dent.normal.y(), dent.normal.z()));
+                  1e3 * dent.overlap, when, dent.normal.x(), dent.normal.y(), dent.normal.z()),
+      {.expected = "bodies and walls that are apart when the run starts"});
 }
 
 void Particles::require_apart() {
@@ -327,17 +328,25 @@ Particles make_particles(const Case& config) {
     Body body = make_body(spec, particles.materials(), directory);
     const double limit = contact_time(body, particles.materials(), std::max(body.velocity.norm(), 1.0));
     if (contact.time_step && !(*contact.time_step > 0 && *contact.time_step <= 0.5 * limit))
-      throw InputError(fmt::format(
-          "contact.time_step = {:.3g} s does not suit body \"{}\" of material \"{}\", whose contacts "
-          "last {:.3g} s: at most half of that is stable, {:.3g} s resolves them",
-          *contact.time_step, body.name, spec.material, limit, 0.1 * limit));
+      throw InputError(
+          fmt::format(
+              "contact.time_step = {:.3g} s does not suit body \"{}\" of material \"{}\", whose contacts "
+              "last {:.3g} s: at most half of that is stable, {:.3g} s resolves them",
+              *contact.time_step, body.name, spec.material, limit, 0.1 * limit),
+          {.key = "time_step",
+           .expected = fmt::format("at most {:.3g} us, or none", 0.5e6 * limit),
+           .example = fmt::format("time_step = \"{:.2g} us\"", 1e5 * limit)});
     for (int c = 0; c < 3; ++c)
       if (domain.period[c] > 0 && domain.period[c] < 4 * body.shape.bounding_radius())
         throw InputError(
             fmt::format("domain.{}: {:.4g} m between periodic sides is too near for body \"{}\", which would "
                         "meet itself; "
                         "at least {:.4g} m",
-                        "xyz"[c], domain.period[c], body.name, 4 * body.shape.bounding_radius()));
+                        "xyz"[c], domain.period[c], body.name, 4 * body.shape.bounding_radius()),
+            {.key = std::string(1, "xyz"[c]),
+             .expected = "sides farther apart, or smaller bodies",
+             .example = fmt::format("{} = [\"0 mm\", \"{:.3g} mm\"]", "xyz"[c],
+                                    4.1e3 * body.shape.bounding_radius())});
     particles.add(std::move(body));
   }
   for (const WallSpec& spec : config.walls) particles.add(make_wall(spec, particles.materials(), directory));

@@ -89,7 +89,7 @@ Wall make_wall(const WallSpec& spec, const Materials& materials, const std::stri
     wall.surface = std::make_shared<Surface>(triangles_of(wall.solids.front()));
     return wall;
   } catch (const InputError& e) {
-    throw InputError(fmt::format("wall \"{}\": {}", spec.name, e.what()));
+    throw InputError(fmt::format("wall \"{}\": {}", spec.name, e.what()), e.advice);
   }
 }
 

@@ -14,6 +14,7 @@
 namespace ejecta {
 namespace {
 
+constexpr const char* kSolidPoints = "at least four points that do not lie in one plane";
 constexpr double kCoplanar = 1e-9;  // of the size: heights below it are none
 
 __extension__ using Wide = __int128;
@@ -102,8 +103,7 @@ void first_tetrahedron(Hull& hull) {
   const int d = farthest(points, [&](const Vec3& p) { return std::abs(up.dot(p - hull.at(a))); });
   const double height = up.dot(hull.at(d) - hull.at(a));
   if (!(std::abs(height) > hull.tolerance))
-    throw InputError(
-        fmt::format("the {} points lie in a plane: a solid needs at least four that do not", points.size()));
+    throw InputError(fmt::format("the {} points lie in a plane", points.size()), {.expected = kSolidPoints});
   const bool above = height > 0;
   for (const auto& [p, q, r] : {std::array{a, b, c}, {a, c, d}, {a, d, b}, {b, d, c}})
     above ? hull.add(p, r, q) : hull.add(p, q, r);
@@ -229,7 +229,8 @@ Polytope merge_faces(Hull& hull) {
 
 Polytope convex_hull(const std::vector<Vec3>& points) {
   if (points.size() < 4)
-    throw InputError(fmt::format("{} points cannot enclose a solid (at least 4 are needed)", points.size()));
+    throw InputError(fmt::format("{} points cannot enclose a solid", points.size()),
+                     {.expected = kSolidPoints});
   Vec3 low = points.front(), high = points.front();
   for (const Vec3& p : points) {
     if (!p.allFinite()) throw InputError("a vertex is not a number");
@@ -258,7 +259,8 @@ Polytope convex_hull(const std::vector<Vec3>& points) {
   const Farthest farthest(result.vertices);
   for (const Polytope::Face& f : result.faces)
     if (!f.normal.allFinite() || farthest.along(f.normal) > f.offset + 1e-6 * result.radius)
-      throw InputError("the points are too nearly in a plane or line to span a solid");
+      throw InputError("the points are too nearly in a plane or line to span a solid",
+                       {.expected = kSolidPoints});
   return result;
 }
 

@@ -33,7 +33,11 @@ Shape make_box(const Vec3& size) {
 }
 
 Shape make_multisphere(const std::vector<Ball>& balls) {
-  if (balls.empty()) throw InputError("a multisphere needs at least one sphere (x, y, z, radius)");
+  if (balls.empty())
+    throw InputError("a multisphere needs at least one sphere",
+                     {.key = "spheres",
+                      .expected = "x, y, z and radius of each",
+                      .example = R"(spheres = [["0 mm", "0 mm", "0 mm", "5 mm"]])"});
   for (const Ball& b : balls) require_positive(b.radius, "radius of each sphere of a multisphere");
   return make_multisphere(balls, mass_balls(balls));
 }
@@ -57,10 +61,15 @@ Shape make_cluster(const Vec3& size, const std::array<int, 3>& count, double sph
   require_positive(sphere_diameter, "sphere diameter of a cluster");
   for (int c = 0; c < 3; ++c) {
     if (count[static_cast<std::size_t>(c)] < 1)
-      throw InputError("a cluster needs at least one sphere along each edge");
+      throw InputError(
+          "a cluster needs at least one sphere along each edge",
+          {.key = "cluster", .expected = "three whole numbers above 0", .example = "cluster = [3, 3, 3]"});
     if (size[c] < sphere_diameter * (1.0 - 1e-12))
       throw InputError(fmt::format("spheres of {} m do not fit into a cluster whose edge is {} m",
-                                   sphere_diameter, size[c]));
+                                   sphere_diameter, size[c]),
+                       {.key = "sphere_diameter",
+                        .expected = "at most the shortest edge",
+                        .example = fmt::format("sphere_diameter = \"{:.3g} mm\"", 1e3 * size.minCoeff())});
   }
   const auto along = [&](int axis, int n) {
     const int last = count[static_cast<std::size_t>(axis)] - 1;

@@ -34,12 +34,15 @@ Shape make_superquadric(const Vec3& size, double across, double along) {
   for (int c = 0; c < 3; ++c)
     if (!(size[c] > 0) || !std::isfinite(size[c]))
       throw InputError(
-          fmt::format("each edge of a superquadric must be a positive length, not {} m", size[c]));
+          fmt::format("each edge of a superquadric must be a positive length, not {} m", size[c]),
+          {.key = "size", .expected = "three lengths", .example = "size = [\"10 mm\", \"8 mm\", \"6 mm\"]"});
   for (const double e : {across, along})
     if (!(e >= 1.0 && e <= 20.0))
-      throw InputError(fmt::format(
-          "exponent {} of a superquadric must be in [1, 20]: below 1 it is not convex, above 20 take a box",
-          e));
+      throw InputError(
+          fmt::format("exponent {} of a superquadric: below 1 it is not convex, above 20 take a box", e),
+          {.key = "exponents",
+           .expected = "from 1 to 20; 2 and 2: an ellipsoid",
+           .example = "exponents = [4, 4]"});
   std::vector<Vec3> points;
   for (const Vec3& d : icosphere(kLevels).vertices) {
     const Vec3 a = d.cwiseAbs();

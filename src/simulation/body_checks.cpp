@@ -41,6 +41,8 @@ std::string mm_or_m(double length) {
 }
 
 /// The key that names the surface of a body, behind "body.0".
+constexpr const char* kClosedSurface = "a closed surface as STL, text or binary, whose normals look outwards";
+
 std::string file_key(const BodySpec& b) {
   return !b.files.empty() ? ".files" : !b.file.empty() ? ".file" : "";
 }
@@ -182,25 +184,37 @@ double widest_around(const Axis& axis, double from, double to) {
   return widest;
 }
 
-/// What setting up the bodies of a run refused is about a body, a wall or the contact: the key by the name in
-/// the message.
-void add_refusal(const Case& c, const std::string& what, std::vector<Problem>& found) {
-  std::string key = "contact";
+/// What setting up the bodies of a run refused is about a body, a wall, grains or the contact: the key by the
+/// name in the message.
+void add_refusal(const Case& c, const InputError& refusal, std::vector<Problem>& found) {
+  const std::string what = refusal.what();
+  const auto in = [&](const std::string& section, const std::string& or_key) {
+    const std::string& key = refusal.advice.key.empty() ? or_key : refusal.advice.key;
+    return key.empty() ? section : section + "." + key;
+  };
+  std::string key = in("contact", "");
   for (std::size_t n = 0; n < c.walls.size(); ++n)
     if (what.starts_with(fmt::format("wall \"{}\"", c.walls[n].name)))
-      key = fmt::format("wall.{}{}", n, c.walls[n].kind == WallKind::mesh ? ".file" : "");
+      key = in(fmt::format("wall.{}", n), c.walls[n].kind == WallKind::mesh ? "file" : "");
+  for (std::size_t n = 0; n < c.grains.size(); ++n)
+    if (what.starts_with(fmt::format("grains \"{}\"", c.grains[n].name)))
+      key = in(fmt::format("grains.{}", n), "");
   // Of two bodies, the one whose place is the harder to see: that from the belt.
   for (const bool on_belt : {false, true})
     for (std::size_t n = c.bodies.size(); n-- > 0;)
-      if (c.bodies[n].on_belt == on_belt &&
+      if (c.bodies[n].on_belt == on_belt && refusal.advice.key.empty() &&
           what.find(fmt::format("body \"{}\"", c.bodies[n].name)) != std::string::npos)
         key = fmt::format("body.{}.{}", n, on_belt ? "on_belt" : "position");
-  for (const char* section : {"splitter", "material", "contact.time_step", "domain"})
-    if (what.starts_with(section)) key = section;
-  const bool apart = what.find("overlaps") != std::string::npos;
+  if (refusal.advice.key == "splitter") key = "splitter";
+  if (what.starts_with("domain")) key = in("domain", "");
+  for (std::size_t n = 0; n < c.materials.size(); ++n)
+    if (what.starts_with(fmt::format("material \"{}\"", c.materials[n].name)))
+      key = in(fmt::format("material.{}", n), "");
+  const bool file = refusal.advice.expected.empty() && key.ends_with(".file");
   found.push_back({.key = key,
                    .what = what,
-                   .expected = apart ? "bodies and walls that are apart when the run starts" : ""});
+                   .expected = file ? "a surface as STL, text or binary" : refusal.advice.expected,
+                   .example = refusal.advice.example});
 }
 
 /// Valve traces and measured curves that cannot be read.
@@ -280,11 +294,17 @@ std::vector<Body> bodies_one_by_one(const Case& c, std::vector<Problem>& found) 
       try {
         bodies.push_back(make_body(c.bodies[n], materials, folder_of(c)));
       } catch (const InputError& e) {
-        found.push_back({.key = fmt::format("body.{}{}", n, file_key(c.bodies[n])), .what = e.what()});
+        const Advice& a = e.advice;
+        const bool file = a.expected.empty() && from_file(c.bodies[n]);
+        found.push_back(
+            {.key = fmt::format("body.{}{}", n, a.key.empty() ? file_key(c.bodies[n]) : "." + a.key),
+             .what = e.what(),
+             .expected = file ? kClosedSurface : a.expected,
+             .example = a.example});
       }
     }
   } catch (const InputError& e) {
-    found.push_back({.key = "material", .what = e.what()});
+    add_refusal(c, e, found);
   }
   return bodies;
 }
@@ -402,13 +422,13 @@ std::vector<Problem> check_bodies(const Case& original, std::optional<Scene>* se
   std::optional<Grid> grid;
   if (flows) grid.emplace(make_grid(c));
   std::optional<Scene> scene;
-  std::string refusal;
+  std::optional<InputError> refusal;
   std::vector<Body> bodies;
   try {  // first of all, and once: surfaces may take seconds to divide
     scene.emplace(make_scene(c, grid ? &*grid : nullptr));
     bodies = company_of(*scene).bodies;
   } catch (const InputError& e) {
-    refusal = e.what();
+    refusal = e;
     bodies = bodies_one_by_one(c, found);
   }
   if (failed()) return found;
@@ -421,7 +441,7 @@ std::vector<Problem> check_bodies(const Case& original, std::optional<Scene>* se
   check_source_case(c, found);
   if (failed()) return found;
   if (!scene) {
-    add_refusal(c, refusal, found);
+    add_refusal(c, *refusal, found);
     return found;
   }
   ask_about_walls(c, scene->particles.walls(), found);  // those of the case stand first

@@ -14,6 +14,9 @@
 namespace ejecta {
 namespace {
 
+constexpr const char* kFlight = "a body that flies towards +x, or splitter.edge for the place of the plate";
+constexpr const char* kOnBelt = "edge = [\"250 mm\", \"60 mm\"]";
+
 /// Height of the path that nothing disturbs, above the plate's edge: that of [launch], or of the first body
 /// that moves, m.
 double undisturbed_height(const Case& c, const Scene& s) {
@@ -22,12 +25,14 @@ double undisturbed_height(const Case& c, const Scene& s) {
   const auto bodies = s.particles.bodies();
   const auto first =
       std::find_if(bodies.begin(), bodies.end(), [](const Body& b) { return b.motion != Motion::fixed; });
-  if (first == bodies.end()) throw InputError("splitter: no body moves, so none comes to the plate");
+  if (first == bodies.end())
+    throw InputError("no body moves, so none comes to the plate",
+                     {.key = "splitter", .expected = kFlight, .example = kOnBelt});
   const FlightState& start = s.starts[static_cast<std::size_t>(first - bodies.begin())];
   if (!(start.velocity.x() > 0.0))
-    throw InputError(fmt::format(
-        "splitter: body \"{}\" must fly towards +x to reach the plate; or give its place as splitter.edge",
-        first->name));
+    throw InputError(
+        fmt::format("the first that moves, \"{}\", does not fly towards +x, to the plate", first->name),
+        {.key = "splitter", .expected = kFlight, .example = kOnBelt});
   return free_flight(start, c.environment.gravity, (edge_x - start.position.x()) / start.velocity.x()).z();
 }
 

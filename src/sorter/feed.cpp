@@ -253,8 +253,10 @@ std::vector<Problem> check_feed(const Case& c) {
     } catch (const InputError& e) {
       const bool sieves =
           c.classes[k].sizes == SizeLaw::sieves && std::string(e.what()).find("siev") != std::string::npos;
-      problems.push_back(
-          {.key = fmt::format("sorter.class.{}.{}", k, sieves ? "sieves" : "form"), .what = e.what()});
+      problems.push_back({.key = fmt::format("sorter.class.{}.{}", k, sieves ? "sieves" : "form"),
+                          .what = e.what(),
+                          .expected = e.advice.expected,
+                          .example = e.advice.example});
       continue;
     }
     const double least = classes.back().size_at(0.01),

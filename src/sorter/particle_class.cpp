@@ -199,8 +199,9 @@ ParticleClass::ParticleClass(const ParticleClassSpec& spec, const std::string& d
       const bool sound = size.size() >= 2 && finer.front() == 0.0 && finer.back() == 1.0 &&
                          size.front() > 0.0 && std::is_sorted(finer.begin(), finer.end());
       if (!sound)
-        throw InputError(
-            fmt::format("{}: the share that is finer must ascend from 0 to 1, at sizes above 0", file));
+        throw InputError(fmt::format("{}: no distribution of sizes", file),
+                         {.expected = "a share that is finer which ascends from 0 to 1, at sizes above 0",
+                          .example = "size [mm], finer: 5, 0; 10, 0.4; 20, 1"});
     } else {
       // From 1 % to 99 %: the law itself has no smallest particle, and a feed has.
       for (int n = 0; n <= 200; ++n) {

@@ -85,7 +85,7 @@ bool finest(const Kind& kind) { return std::string_view(kind.name) == "mesh of 5
 /// The finest mesh on all surfaces at all three: EJECTA_ALL_PAIRS=1.
 TEST(Restitution, OfEveryShapeOnEverySurface) {
   const bool every = std::getenv("EJECTA_ALL_PAIRS") != nullptr;
-  for (const double e : {0.1, 0.5, 0.9}) {
+  for (const double e : {0.1, 0.5, 0.9, 1.0}) {
     const Case c = elastic(e);
     const Materials materials(c);
     std::vector<std::pair<std::string, Wall>> walls;
@@ -133,7 +133,7 @@ TEST(Restitution, OfEveryShapeOnEachOther) {
   std::vector<Kind> all = kinds();
   const bool every = std::getenv("EJECTA_ALL_PAIRS") != nullptr;
   if (!every) std::erase_if(all, finest);
-  for (const double e : every ? std::vector{0.1, 0.5, 0.9} : std::vector{0.5}) {
+  for (const double e : every ? std::vector{0.1, 0.5, 0.9, 1.0} : std::vector{0.5}) {
     const Case c = elastic(e);
     const Materials materials(c);
     for (std::size_t i = 0; i < all.size(); ++i)

@@ -67,6 +67,8 @@ void print_input_error(const InputError& e) {
   // A list of the errors of a case says so itself, error by error.
   const bool list = std::string_view(e.what()).find("error: ") != std::string_view::npos;
   fmt::print(stderr, "{}{}\n", list ? "" : "error: ", e.what());
+  if (!e.advice.expected.empty()) fmt::print(stderr, "  expected: {}\n", e.advice.expected);
+  if (!e.advice.example.empty()) fmt::print(stderr, "  example:  {}\n", e.advice.example);
 }
 
 int run_command_line(int argc, const char* const* argv) {
