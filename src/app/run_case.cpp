@@ -8,9 +8,10 @@
 
 #include "app/signals.hpp"
 #include "app/simulation.hpp"
+#include "app/teller.hpp"
 #include "base/error.hpp"
 #include "base/exit_code.hpp"
-#include "base/parallel.hpp"
+#include "base/shell_word.hpp"
 #include "jet/inlet.hpp"
 #include "jet/store.hpp"
 #include "output/progress.hpp"
@@ -18,14 +19,10 @@
 #include "output/verdict.hpp"
 #include "simulation/coupled_model.hpp"
 #include "simulation/jet_sweep.hpp"
-#include "simulation/run.hpp"
+#include "workflow/watched_run.hpp"
 
 namespace ejecta {
 namespace {
-
-using RunOfCase = std::function<Result(const Case&, const Context&)>;
-
-void print_note(const std::string& line) { fmt::print(stderr, "{}\n", line); }
 
 void print_verdict(const Result& result, const std::filesystem::path& run) {
   fmt::print("{}\n", output::verdict_sentence(result.quantities));
@@ -40,53 +37,19 @@ void print_step(const Case& c, const Model& model) {
   for (const auto& op : model.operator_times()) fmt::print("  {:2}. {:<26} {}\n", ++n, op.name, op.equation);
 }
 
-std::string start_line(const Case& c, const Moment& m, const std::filesystem::path& directory) {
-  const auto bodies = m.model.bodies();
-  return fmt::format("{}: {} cells, {} bod{}, {} thread{} -> {}{}", c.path, m.model.cells(), bodies,
-                     bodies == 1 ? "y" : "ies", thread_count(), thread_count() == 1 ? "" : "s",
-                     directory.string(), m.step > 0 ? fmt::format(", from t = {:.3f} ms", 1e3 * m.time) : "");
+output::ProgressOptions progress_options(const RunOptions& o) {
+  return output::progress_options_of_terminal(o.quiet     ? output::Verbosity::quiet
+                                              : o.verbose ? output::Verbosity::verbose
+                                                          : output::Verbosity::normal);
 }
 
-/// How far a run is, on the terminal and in its progress.json.
-class ProgressOfRun {
- public:
-  ProgressOfRun(const Case& c, const RunOptions& options, std::filesystem::path directory)
-      : case_(c), options_(options), directory_(std::move(directory)) {}
-
-  void observe(const Moment& m) {
-    last_ = {m.time, m.busy_until, m.step, m.dt, m.model.courant(), m.model.cells()};
-    if (progress_) return progress_->update(last_);
-    auto p = output::progress_options_of_terminal(options_.quiet     ? output::Verbosity::quiet
-                                                  : options_.verbose ? output::Verbosity::verbose
-                                                                     : output::Verbosity::normal);
-    p.file = output::RunDirectory::open(directory_).progress();
-    progress_.emplace(std::cerr, p);
-    progress_->note(start_line(case_, m, directory_));
-    if (thread_count() > core_count())
-      progress_->note(fmt::format("{} threads share {} core{}: more threads than cores make a run slower",
-                                  thread_count(), core_count(), core_count() == 1 ? "" : "s"));
-  }
-  void note(const std::string& line) {
-    if (progress_) progress_->note(line);
-  }
-  void finish(const std::string& state) {
-    if (progress_) progress_->finish(last_, state);
-  }
-  /// Leaves the reason in progress.json, if that can still be written.
-  void give_up(const std::string& state) {
-    try {
-      finish(state);
-    } catch (const Error&) {
-    }
-  }
-
- private:
-  const Case& case_;
-  const RunOptions& options_;
-  std::filesystem::path directory_;
-  std::optional<output::Progress> progress_;
-  output::ProgressState last_;
-};
+/// "ejecta COMMAND CASE --set ...", as a shell takes it: what gives this run again.
+std::string command_line_of(const std::string& command, const Case& c, const RunOptions& options) {
+  std::string line = "ejecta " + command + " " + shell_word(c.path);
+  for (const std::string& set : options.overrides) line += " --set " + shell_word(set);
+  if (!options.out.empty()) line += " --out " + shell_word(options.out);
+  return line;
+}
 
 std::filesystem::path directory_of(const Case& c, const RunOptions& options) {
   return options.out.empty() ? output::RunDirectory::default_path(c.path)
@@ -106,30 +69,18 @@ int exit_code_of(RunEnd end) {
 }
 
 /// The run with its progress on the terminal, until its end or a signal.
-Result watched_run(const Case& c, const RunOptions& options, const RunFiles& files, const RunOfCase& runner,
-                   ProgressOfRun& progress) {
+Result until_a_signal(WatchedRun& watched, const RunOptions& options, const RunFiles& files,
+                      const RunOfCase& runner) {
   std::optional<SignalWatch> signals;  // until the first step a signal ends the program at once
-  const Context context{.files = files,
-                        .threads = options.threads,
-                        .observe =
-                            [&](const Moment& m) {
-                              if (!signals) signals.emplace();
-                              progress.observe(m);
-                            },
-                        .stop = [&] { return signals && signals->stop_requested(); },
-                        .keep = [&] { return signals && signals->take_checkpoint_request(); },
-                        .note = options.quiet ? Note{} : Note(print_note)};
-  try {
-    const Result result = runner(c, context);
-    progress.finish(result.end == RunEnd::stopped ? "stopped" : "done");
-    return result;
-  } catch (const DivergedError&) {
-    progress.give_up("diverged");
-    throw;
-  } catch (...) {
-    progress.give_up("failed");
-    throw;
-  }
+  return watched.compute(runner, {.files = files,
+                                  .threads = options.threads,
+                                  .observe =
+                                      [&](const Moment&) {
+                                        if (!signals) signals.emplace();
+                                      },
+                                  .stop = [&] { return signals && signals->stop_requested(); },
+                                  .keep = [&] { return signals && signals->take_checkpoint_request(); },
+                                  .note = options.quiet ? Note{} : Note(print_note)});
 }
 
 /// `command`: that the user gave, "run" or "jet".
@@ -147,9 +98,9 @@ int run_into_directory(const std::string& command, const Case& c, RunOptions opt
   const std::string typed = command_line_of(command, c, options);
   options.out = directory.string();
   const auto here = [&] { return command_line_of(command, c, options); };
-  ProgressOfRun progress(c, options, directory);
+  WatchedRun progress(c, std::cerr, progress_options(options));
   const RunFiles files{directory, options.force, options.resume, typed, here(), options.overrides};
-  const Result result = watched_run(c, options, files, runner, progress);
+  const Result result = until_a_signal(progress, options, files, runner);
   if (result.end == RunEnd::stopped) {
     progress.note(fmt::format("continue with\n  {} --resume", here()));
     return exit_stopped;
@@ -200,11 +151,11 @@ std::optional<nlohmann::ordered_json> result_of(const Case& c, const std::filesy
                                                 int threads) {
   const RunOptions options{.out = directory.string(), .threads = threads, .force = true, .quiet = true};
   const std::string command = command_line_of("run", c, options);
-  ProgressOfRun progress(c, options, directory);
+  WatchedRun progress(c, std::cerr, progress_options(options));
   const RunOfCase any = [](const Case& of, const Context& context) {
     return is_jet_case(of) ? run_jet(of, kBoxHeight, context) : run(of, context);
   };
-  const Result r = watched_run(c, options, {directory, true, false, command, command}, any, progress);
+  const Result r = until_a_signal(progress, options, {directory, true, false, command, command}, any);
   if (r.end == RunEnd::stopped) return std::nullopt;
   return r.quantities;
 }

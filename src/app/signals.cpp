@@ -1,6 +1,7 @@
 #include "app/signals.hpp"
 
 #include <csignal>
+#include <memory>
 
 namespace ejecta {
 namespace {
@@ -26,6 +27,13 @@ SignalWatch::~SignalWatch() {
 }
 
 bool SignalWatch::stop_requested() const { return stop != 0; }
+
+std::function<bool()> stop_on_signal() {
+  return [watch = std::shared_ptr<SignalWatch>()]() mutable {
+    if (!watch) watch = std::make_shared<SignalWatch>();
+    return watch->stop_requested();
+  };
+}
 
 bool SignalWatch::take_checkpoint_request() {
   const bool wanted = checkpoint != 0;

@@ -1,4 +1,5 @@
 #pragma once
+#include <functional>
 
 namespace ejecta {
 
@@ -13,5 +14,8 @@ class SignalWatch {
   /// True once for every SIGUSR1.
   bool take_checkpoint_request();
 };
+
+/// Whether a signal has asked to stop. Until it is first called a signal ends the program at once.
+std::function<bool()> stop_on_signal();
 
 }  // namespace ejecta

@@ -20,9 +20,6 @@ struct RunOptions {
   bool sweep = false;  ///< `ejecta jet`: the jets of jet.sweep_pressures and jet.sweep_velocities instead
 };
 
-/// "ejecta COMMAND CASE --set ...", as a shell takes it: what gives this run again.
-std::string command_line_of(const std::string& command, const Case& c, const RunOptions& options);
-
 /// Runs a case into its run directory. Returns an ExitCode.
 int run_case(const Case& c, const RunOptions& options);
 /// Prints the operators of a step with their equations; computes nothing. Returns an ExitCode.

@@ -38,4 +38,12 @@ std::string default_words(const Key& key) {
   return value.empty() ? "none" : value;
 }
 
+std::vector<std::string> all_keys() {
+  Case c = documented_case();
+  std::vector<std::string> names;
+  for (const Section& s : documented_sections(c))
+    for (const Key& key : s.keys(0)) names.push_back(s.name + (s.repeated ? ".0." : ".") + key.name);
+  return names;
+}
+
 }  // namespace ejecta

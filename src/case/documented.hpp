@@ -20,4 +20,7 @@ std::string header(const Section& s);
 /// What holds when the key is left out, e.g. "8 ms", "ambient", "required".
 std::string default_words(const Key& key);
 
+/// "section.key" of every key, as --set and `explain` take it.
+std::vector<std::string> all_keys();
+
 }  // namespace ejecta

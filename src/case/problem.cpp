@@ -40,6 +40,11 @@ std::string excerpt(const Place& place) {
 
 CaseError::CaseError(std::vector<Problem> list) : InputError(render(list)), problems(std::move(list)) {}
 
+std::vector<Problem> problems_of(const InputError& refusal) {
+  if (const auto* of_case = dynamic_cast<const CaseError*>(&refusal)) return of_case->problems;
+  return {{.what = refusal.what(), .expected = refusal.advice.expected, .example = refusal.advice.example}};
+}
+
 std::string render(const Problem& p) {
   std::string text;
   if (p.place.source) text += fmt::format("{}:{}: ", p.place.source->name, p.place.line_number());

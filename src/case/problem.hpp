@@ -26,6 +26,9 @@ struct CaseError : InputError {
   std::vector<Problem> problems;
 };
 
+/// Of any refusal: that of a case problem by problem, another as one.
+std::vector<Problem> problems_of(const InputError& refusal);
+
 /// So many that nobody reads one more.
 inline bool enough(const std::vector<Problem>& problems) { return problems.size() >= 1000; }
 

@@ -94,6 +94,14 @@ std::string read_file(const std::filesystem::path& path) {
   return text;
 }
 
+bool holds_no_file(const std::filesystem::path& directory, std::string_view head, std::error_code& failed) {
+  if (!std::filesystem::exists(directory, failed)) return true;
+  for (auto entry = std::filesystem::recursive_directory_iterator(directory, failed);
+       !failed && entry != std::filesystem::recursive_directory_iterator(); entry.increment(failed))
+    if (!entry->is_directory() && entry->path().filename() != std::string(head) + ".tmp") return false;
+  return true;
+}
+
 LineFile::LineFile(std::filesystem::path path) : path_(std::move(path)) {
   fd_ = ::open(path_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_APPEND | O_CLOEXEC, 0644);
   if (fd_ < 0) throw_system_error("cannot create", path_);

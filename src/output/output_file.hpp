@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <system_error>
 
 namespace ejecta::output {
 
@@ -31,6 +32,11 @@ void write_file(const std::filesystem::path& path, std::string_view text);
 
 /// Whole content; throws Error with the system's reason.
 std::string read_file(const std::filesystem::path& path);
+
+/// Whether a directory holds no file, but for one that was being written under the name of its `head`, which
+/// says what the directory is, when a process was killed. Folders do not count. A place that does not exist
+/// holds nothing; `failed` says why one cannot be looked into.
+bool holds_no_file(const std::filesystem::path& directory, std::string_view head, std::error_code& failed);
 
 /// A file that grows by whole lines: each append is one write to the system, so that a killed run leaves at
 /// most one torn last line. Appending to a file that was removed meanwhile throws.

@@ -24,14 +24,6 @@ constexpr std::array kContents{"case.toml",    "result.json",  "progress.json", 
                                path.string(), why.message()));
 }
 
-/// Empty, or the empty folders of a run that was killed before it wrote anything.
-bool holds_no_file(const fs::path& path, std::error_code& failed) {
-  for (auto entry = fs::recursive_directory_iterator(path, failed);
-       !failed && entry != fs::recursive_directory_iterator(); entry.increment(failed))
-    if (!entry->is_directory()) return false;
-  return true;
-}
-
 /// Names and paths may hold bytes that are no UTF-8; they must not cost the result.
 std::string json_text(const nlohmann::ordered_json& json) {
   return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
@@ -54,7 +46,7 @@ void RunDirectory::require_creatable(const fs::path& path, bool force) {
     if (!fs::is_directory(path))
       throw InputError(fmt::format("{} is a file; a run needs a directory", path.string()));
     const bool is_run = fs::exists(path / "manifest.json");
-    const bool is_empty = holds_no_file(path, failed);
+    const bool is_empty = holds_no_file(path, "manifest.json", failed);
     if (failed) refuse(path, failed);
     if (is_run && !force)
       throw InputError(
@@ -72,6 +64,7 @@ RunDirectory RunDirectory::create(const fs::path& path, bool force) {
   std::error_code failed;
   if (fs::exists(path, failed)) {
     for (const char* name : kContents) {
+      fs::remove(path / (std::string(name) + ".tmp"), failed);
       fs::remove_all(path / name, failed);
       if (failed) refuse(path, failed);
     }

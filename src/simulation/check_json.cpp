@@ -61,6 +61,12 @@ Json problem_json(const Problem& p) {
   return j;
 }
 
+Json problems_json(const std::vector<Problem>& list) {
+  Json all = Json::array();
+  for (const Problem& p : list) all.push_back(problem_json(p));
+  return all;
+}
+
 Json check_json(const Case& c, const Scene& scene, const std::vector<Problem>& warnings, double bandwidth) {
   Json j{{"case", c.path}, {"title", c.run.title}, {"solver", word(c.flow.solver)}};
   const Company company = company_of(scene);
@@ -75,7 +81,8 @@ Json check_json(const Case& c, const Scene& scene, const std::vector<Problem>& w
       j["flow_steps"] = f.steps;
       j["time_step_s"] = f.time_step;
       j["flow_until_s"] = f.air_until;
-      j["expected_wall_time_s"] = expected_seconds(c, f, bandwidth);
+      j["expected_wall_time_s"] =
+          expected_seconds(c, f, bandwidth, scene.particles.bodies().subspan(scene.bodies));
     }
     j["memory_bytes"] = f.memory;
     j["disk_bytes"] = f.disk;
@@ -99,8 +106,7 @@ Json check_json(const Case& c, const Scene& scene, const std::vector<Problem>& w
   j["assumptions"] = Json::array();
   for (const output::Assumption& a : assumptions(c))
     j["assumptions"].push_back({{"key", a.key}, {"value", a.value}, {"what", a.what}, {"reason", a.reason}});
-  j["problems"] = Json::array();
-  for (const Problem& p : warnings) j["problems"].push_back(problem_json(p));
+  j["problems"] = problems_json(warnings);
   return j;
 }
 

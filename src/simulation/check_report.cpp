@@ -49,7 +49,7 @@ std::string time_words(double seconds) {
 
 std::string length_words(double metres) { return fmt::format("{:.3g} mm", 1e3 * metres); }
 
-std::string flow_part(const Case& c, const Company& company, double bandwidth) {
+std::string flow_part(const Case& c, const Company& company, std::span<const Body> grains, double bandwidth) {
   const Forecast f = forecast(c, company);
   std::string text = fmt::format("  flow         {}, {}\n", word(c.flow.solver), word(c.flow.turbulence));
   text += fmt::format("  cells        {} ({} to {} across, {:.3g} to {:.3g} mm3)\n", f.cells,
@@ -61,7 +61,7 @@ std::string flow_part(const Case& c, const Company& company, double bandwidth) {
         two_digits(static_cast<double>(f.steps)), time_words(f.time_step), f.fastest, c.run.courant,
         time_words(f.air_until));
     text += fmt::format("  time         {} on this machine, longer if the fluid gets faster\n",
-                        duration_words(expected_seconds(c, f, bandwidth)));
+                        duration_words(expected_seconds(c, f, bandwidth, grains)));
   } else {
     text += "  steps        unknown: no velocity is given, the flow makes its own\n";
   }
@@ -207,7 +207,7 @@ std::string check_report(const Case& c, const Scene& scene, const std::vector<Pr
   std::optional<Grid> grid;
   if (c.flow.solver != FlowSolver::none) {
     grid.emplace(make_grid(c));
-    text += flow_part(c, company, bandwidth);
+    text += flow_part(c, company, scene.particles.bodies().subspan(scene.bodies), bandwidth);
   } else {
     text += fmt::format("  flow         none, up to {}\n", format_quantity(c.run.end_time, Dimension::time));
   }

@@ -112,6 +112,11 @@ CellCost cell_cost(const Case& c) {
   return laminar ? CellCost{26, 360.0} : CellCost{40, 480.0};
 }
 
+/// What grains add, of the same kind: the pressure equation is iterated where they leave no room for the
+/// fluid, and each grain costs its motion and a share of every cell it is mapped on. Measured: 100,000 grains
+/// of 0.15 mm (five cells each) in 571,200 cells, and 200,000 of 0.5 mm (216 each).
+constexpr double kIteratedPressure = 2.5, kNumbersOfGrain = 6000.0, kNumbersOfGrainInCell = 100.0;
+
 constexpr double kStateFields = 10.0;  ///< in a checkpoint: velocity, face velocities, pressure, turbulence
 
 double count_of(double interval, double end) {
@@ -171,10 +176,16 @@ Forecast forecast(const Case& c, const Company& company) {
   return f;
 }
 
-double expected_seconds(const Case& c, const Forecast& f, double bandwidth) {
+double expected_seconds(const Case& c, const Forecast& f, double bandwidth, std::span<const Body> grains) {
   const double corrections = c.flow.solver == FlowSolver::incompressible ? 0.5 * c.flow.corrections : 1.0;
-  return static_cast<double>(f.steps) * static_cast<double>(f.cells) * cell_cost(c).moved * corrections *
-         sizeof(Real) / bandwidth;
+  double moved = static_cast<double>(f.cells) * cell_cost(c).moved * corrections;
+  if (!grains.empty() && c.coupling.exchange == GrainExchange::two_way) moved *= kIteratedPressure;
+  for (const Body& grain : grains) {
+    const double width = 2.0 * c.coupling.kernel_width * grain.shape.bounding_radius(),
+                 cells = std::pow(1.0 + width / std::cbrt(f.smallest_volume), 3);
+    moved += kNumbersOfGrain + kNumbersOfGrainInCell * cells;
+  }
+  return static_cast<double>(f.steps) * moved * sizeof(Real) / bandwidth;
 }
 
 double measured_bandwidth() {

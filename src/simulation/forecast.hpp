@@ -27,7 +27,7 @@ Forecast forecast(const Case& c);
 Forecast forecast(const Case& c, const Company& company);
 
 /// Seconds that the steps take at the rate (bytes/s) at which this machine moves data.
-double expected_seconds(const Case& c, const Forecast& f, double bandwidth);
+double expected_seconds(const Case& c, const Forecast& f, double bandwidth, std::span<const Body> grains);
 /// Measured in about a tenth of a second, bytes/s.
 double measured_bandwidth();
 
@@ -43,5 +43,6 @@ std::string check_report(const Case& c, const Scene& scene, const std::vector<Pr
 nlohmann::ordered_json check_json(const Case& c, const Scene& scene, const std::vector<Problem>& warnings,
                                   double bandwidth);
 nlohmann::ordered_json problem_json(const Problem& p);
+nlohmann::ordered_json problems_json(const std::vector<Problem>& list);
 
 }  // namespace ejecta

@@ -22,10 +22,15 @@ constexpr std::int64_t kPieces = 8;  ///< pieces between two checkpoints
 SorterDirectory::SorterDirectory(std::filesystem::path path, std::string input, bool force)
     : path_(std::move(path)), input_(std::move(input)) {
   const bool mine = std::filesystem::exists(state());
-  if (!mine && holds_anything())
+  std::error_code none;
+  if (!mine && !output::holds_no_file(path_, "state.json", none))
     throw InputError(fmt::format("{} is there and is no directory of a sorter\n  expected: another --out",
                                  path_.string()));
-  if (mine && force) std::filesystem::remove_all(path_);
+  if (mine && force) {  // the state last: it says whose directory this is
+    for (const auto& entry : std::filesystem::directory_iterator(path_))
+      if (entry.path() != state()) std::filesystem::remove_all(entry.path());
+    std::filesystem::remove(state());
+  }
   std::filesystem::create_directories(path_);
   if (!std::filesystem::exists(state())) write({});
 }
@@ -49,14 +54,6 @@ void SorterDirectory::write(const SorterState& s) const {
   nlohmann::ordered_json json{{"input_sha256", input_}};
   json.update(json_of(s));
   output::write_file(state(), json.dump());
-}
-
-/// But for what a kill left of the first state.
-bool SorterDirectory::holds_anything() const {
-  std::error_code none;
-  for (const auto& entry : std::filesystem::directory_iterator(path_, none))
-    if (!entry.path().filename().string().starts_with("state.json")) return true;
-  return false;
 }
 
 std::int64_t cells_of_sorter(const Case& c, const Sorter& sorter) {

@@ -20,7 +20,6 @@ class SorterDirectory {
 
  private:
   std::filesystem::path state() const { return path_ / "state.json"; }
-  bool holds_anything() const;
   std::filesystem::path path_;
   std::string input_;
 };

@@ -1,10 +1,7 @@
 #include "study/local.hpp"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/prctl.h>
 #include <sys/wait.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
@@ -18,6 +15,7 @@
 
 #include "base/error.hpp"
 #include "base/exit_code.hpp"
+#include "base/process.hpp"
 #include "base/stopwatch.hpp"
 #include "output/output_file.hpp"
 
@@ -43,28 +41,11 @@ class Pool {
   std::vector<std::size_t> take_back() { return std::exchange(back_, {}); }
 
   void start(const std::vector<std::size_t>& tasks) {
-    const std::string log = store_.log(tasks.front()).string();
+    const std::filesystem::path log = store_.log(tasks.front());
     std::vector<std::string> words{executor_.program.string(), "study", "run-task", store_.path().string()};
     for (const std::size_t task : tasks) words.push_back(std::to_string(task));
     words.push_back("--threads=" + std::to_string(executor_.threads));
-    std::vector<char*> argv;
-    for (std::string& w : words) argv.push_back(w.data());
-    argv.push_back(nullptr);
-    const pid_t driver = ::getpid();
-    const pid_t child = ::fork();
-    if (child < 0) throw Error(fmt::format("cannot start a process: {}", std::strerror(errno)));
-    if (child == 0) {
-      // A driver that is killed takes its tasks along, which leave checkpoints.
-      ::prctl(PR_SET_PDEATHSIG, SIGTERM);
-      if (::getppid() != driver) ::_exit(127);
-      const int nothing = ::open("/dev/null", O_RDWR);
-      const int errors = ::open(log.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644);
-      ::dup2(nothing, 0);
-      ::dup2(nothing, 1);
-      ::dup2(errors >= 0 ? errors : nothing, 2);
-      ::execv(argv[0], argv.data());
-      ::_exit(127);
-    }
+    const pid_t child = start_process(std::move(words), log);
     running_[child] = {tasks, wall_seconds()};
   }
 

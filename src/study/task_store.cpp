@@ -121,7 +121,7 @@ TaskStore TaskStore::create(const fs::path& directory, const Json& header, bool 
       for (const char* name : kFolders) fs::remove_all(directory / name, failed);
       for (const char* name : kFiles) fs::remove(directory / name, failed);
     }
-  } else if (fs::exists(directory, failed) && !fs::is_empty(directory, failed)) {
+  } else if (!output::holds_no_file(directory, "study.json", failed)) {
     throw InputError(fmt::format(
         "{} holds files that are not of a study; choose another place with --out DIR", directory.string()));
   }

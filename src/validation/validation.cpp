@@ -165,6 +165,24 @@ Validation validate_case(const std::string& path, const std::string& name, const
   return v;
 }
 
+std::vector<Validation> validate_cases(const std::vector<std::filesystem::path>& files,
+                                       const std::filesystem::path& out, const Runner& runner,
+                                       const Note& note) {
+  const std::vector<std::string> names = names_of(files);
+  std::vector<Validation> done;
+  for (std::size_t n = 0; n < files.size() && exit_code_of(done) != exit_stopped; ++n) {
+    note(fmt::format("[{}/{}] {}", n + 1, files.size(), files[n].string()));
+    done.push_back(validate_case(files[n].string(), names[n], out, runner));
+  }
+  return done;
+}
+
+ExitCode exit_code_of(const std::vector<Validation>& list) {
+  if (!list.empty() && list.back().failure == "stopped") return exit_stopped;
+  const bool pass = std::all_of(list.begin(), list.end(), [](const Validation& v) { return v.pass(); });
+  return pass ? exit_done : exit_validation;
+}
+
 std::string validation_table(const std::vector<Validation>& list) {
   std::string text = fmt::format("{:<44} {:>14} {:>16} {:>11}  {:<4}  {}\n", "quantity", "computed",
                                  "reference", "error", "pass", "source");

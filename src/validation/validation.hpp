@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "base/exit_code.hpp"
+#include "base/text.hpp"
 #include "case/case.hpp"
 
 namespace ejecta {
@@ -53,6 +55,12 @@ struct Validation {
 /// cases after it are run all the same.
 Validation validate_case(const std::string& path, const std::string& name, const std::filesystem::path& out,
                          const Runner& runner);
+
+/// The same for each of these files, in order, until one is stopped; `note` hears of each.
+std::vector<Validation> validate_cases(const std::vector<std::filesystem::path>& files,
+                                       const std::filesystem::path& out, const Runner& runner,
+                                       const Note& note);
+ExitCode exit_code_of(const std::vector<Validation>& list);
 
 /// The case files meant by `names`: a file, a directory, or part of the name of a shipped case; none: all
 /// shipped ones that expect something. Throws InputError for a name that means nothing.

@@ -75,8 +75,8 @@ TEST(Forecast, NoSpeedGivenNoStepsForetold) {
 TEST(Forecast, MemoryAndTimeGrowWithTheCells) {
   const Case coarse = ejection(), fine = ejection({"grid.z.cells=[160]"});
   EXPECT_GT(forecast(fine).memory, 1.5 * forecast(coarse).memory);
-  EXPECT_GT(expected_seconds(fine, forecast(fine), 1e10),
-            2.0 * expected_seconds(coarse, forecast(coarse), 1e10));
+  EXPECT_GT(expected_seconds(fine, forecast(fine), 1e10, {}),
+            2.0 * expected_seconds(coarse, forecast(coarse), 1e10, {}));
 }
 
 TEST(Forecast, FieldOutputNeedsDisk) {

@@ -53,6 +53,8 @@ TEST(RunDirectory, ARunKilledAtItsStartIsNotInTheWay) {
   const ScratchDirectory dir;
   RunDirectory::create(dir / "a.run", false);
   EXPECT_NO_THROW(RunDirectory::create(dir / "a.run", false));
+  write_file(dir / "a.run/manifest.json.tmp", "{\"prog");
+  EXPECT_NO_THROW(RunDirectory::create(dir / "a.run", false));
 }
 
 TEST(RunDirectory, FileInTheWayOrImpossiblePlaceIsNamed) {

@@ -13,7 +13,11 @@ void add_case_options(CLI::App& command, CaseOptions& options) {
   command.add_option("CASE", options.path, "Case file (.toml), or the name of a shipped case")
       ->required()
       ->type_name("");
-  command.add_option("--set", options.overrides, "Change a key: section.key=value; may be repeated")
+  add_overrides(command, options.overrides);
+}
+
+void add_overrides(CLI::App& command, std::vector<std::string>& overrides) {
+  command.add_option("--set", overrides, "Change a key: section.key=value; may be repeated")
       ->type_name("KEY=VALUE")
       ->expected(1)
       ->take_all();

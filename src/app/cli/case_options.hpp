@@ -16,6 +16,7 @@ struct CaseOptions {
 /// Adds CASE and --set to a command.
 void add_case_options(CLI::App& command, CaseOptions& options);
 
+void add_overrides(CLI::App& command, std::vector<std::string>& overrides);
 void add_threads(CLI::App& command, int& threads);
 
 /// Loads the case and, unless `quiet`, prints what is unlikely to be meant to stderr.

@@ -7,25 +7,13 @@
 
 #include "app/cli/case_options.hpp"
 #include "app/cli/commands.hpp"
-#include "app/study_runs.hpp"
 #include "base/exit_code.hpp"
 #include "simulation/body_checks.hpp"
 #include "simulation/forecast.hpp"
 #include "validation/validation.hpp"
+#include "workflow/studies.hpp"
 
 namespace ejecta {
-namespace {
-
-nlohmann::ordered_json problems_of(const InputError& e) {
-  nlohmann::ordered_json list = nlohmann::ordered_json::array();
-  if (const auto* error = dynamic_cast<const CaseError*>(&e))
-    for (const Problem& p : error->problems) list.push_back(problem_json(p));
-  else list.push_back(problem_json({.what = e.what()}));
-  return list;
-}
-
-}  // namespace
-
 void add_check(CLI::App& app, Action& action) {
   struct Options {
     std::vector<std::string> cases, overrides;
@@ -35,10 +23,7 @@ void add_check(CLI::App& app, Action& action) {
       "check", "What a run will be: cells, steps, time, memory, disk, assumptions; runs nothing");
   auto o = std::make_shared<Options>();
   command->add_option("CASE", o->cases, "Case files (.toml)")->required()->type_name("");
-  command->add_option("--set", o->overrides, "Change a key: section.key=value; may be repeated")
-      ->type_name("KEY=VALUE")
-      ->expected(1)
-      ->take_all();
+  add_overrides(*command, o->overrides);
   command->add_flag("--json", o->json, "For programs: a list of one object a case (docs/files.md)");
   command->footer("Examples:\n  ejecta check cases/paper/*.toml\n  ejecta check my-case.toml --json");
   command->callback([o, &action] {
@@ -59,7 +44,7 @@ void add_check(CLI::App& app, Action& action) {
           else fmt::print("{}\n", check_report(c, *scene, warnings, bandwidth));
         } catch (const InputError& e) {
           code = exit_bad_input;
-          if (o->json) list.push_back({{"case", path}, {"problems", problems_of(e)}});
+          if (o->json) list.push_back({{"case", path}, {"problems", problems_json(problems_of(e))}});
           else print_input_error(e);
         }
       }

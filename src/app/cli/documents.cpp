@@ -42,15 +42,6 @@ std::string synopsis(const CLI::App& command) {
   return text;
 }
 
-/// "section.key" of every key, as --set and `explain` take it.
-std::vector<std::string> all_keys() {
-  Case c = documented_case();
-  std::vector<std::string> names;
-  for (const Section& s : documented_sections(c))
-    for (const Key& key : s.keys(0)) names.push_back(s.name + (s.repeated ? ".0." : ".") + key.name);
-  return names;
-}
-
 }  // namespace
 
 std::string man_page(const CLI::App& program) {

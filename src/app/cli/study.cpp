@@ -1,19 +1,24 @@
 #include <memory>
 
+#include "app/cli/case_options.hpp"
 #include "app/cli/commands.hpp"
-#include "app/study_runs.hpp"
+#include "app/study_commands.hpp"
+#include "app/teller.hpp"
 
 /// The commands that run a case many times: study, map; and many cases: campaign.
 namespace ejecta {
 namespace {
 
-void add_study_options(CLI::App& command, StudyOptions& o, bool required) {
+struct StudyCommand {
+  StudyOptions study{.program = this_program()};
+  bool quiet = false;
+};
+
+void add_study_options(CLI::App& command, StudyCommand& c, bool required) {
+  StudyOptions& o = c.study;
   CLI::Option* path = command.add_option("CASE", o.path, "Case file (.toml)")->type_name("");
   if (required) path->required();
-  command.add_option("--set", o.overrides, "Change a key: section.key=value; may be repeated")
-      ->type_name("KEY=VALUE")
-      ->expected(1)
-      ->take_all();
+  add_overrides(command, o.overrides);
   command
       .add_option("--out", o.out,
                   "Directory (default: the name of the case with ." + command.get_name() + ")")
@@ -31,7 +36,7 @@ void add_study_options(CLI::App& command, StudyOptions& o, bool required) {
       ->type_name("OPTION")
       ->expected(1)
       ->take_all();
-  command.add_flag("-q,--quiet", o.quiet, "Print nothing but errors");
+  command.add_flag("-q,--quiet", c.quiet, "Print nothing but errors");
 }
 
 /// A command of `ejecta study` that takes the directory of a study.
@@ -49,7 +54,7 @@ CLI::App* add_for_directory(CLI::App& study, Action& action, const char* name, c
 void add_study(CLI::App& app, Action& action) {
   CLI::App* command = app.add_subcommand("study", "Runs a case many times, as its [study] says");
   command->get_formatter()->label("SUBCOMMAND", "COMMAND");
-  auto o = std::make_shared<StudyOptions>();
+  auto o = std::make_shared<StudyCommand>();
   add_study_options(*command, *o, false);
   command->require_subcommand(0, 1);
   add_for_directory(*command, action, "status", "How far a study is, what runs and what failed", study_tell);
@@ -79,21 +84,21 @@ void add_study(CLI::App& app, Action& action) {
       "  ejecta study pressures.toml --print-commands");
   command->callback([command, o, &action] {
     if (!command->get_subcommands().empty()) return;
-    if (o->path.empty()) throw CLI::RequiredError("CASE");
-    action = [o] { return study_case(*o); };
+    if (o->study.path.empty()) throw CLI::RequiredError("CASE");
+    action = [o] { return study_case(o->study, o->quiet); };
   });
 }
 
 void add_map(CLI::App& app, Action& action) {
   CLI::App* command =
       app.add_subcommand("map", "Finds the places around the jet from which a particle is ejected ([map])");
-  auto o = std::make_shared<StudyOptions>();
+  auto o = std::make_shared<StudyCommand>();
   add_study_options(*command, *o, true);
   command->footer(
       "The report is written after every few runs. A map that was stopped, or killed, goes on when the same\n"
       "command is given again; `ejecta study status DIR` says how far it is.\n\n"
       "Example:\n  ejecta map cases/paper/maps/10mm-cubic.toml");
-  command->callback([o, &action] { action = [o] { return map_case(*o); }; });
+  command->callback([o, &action] { action = [o] { return map_case(o->study, o->quiet); }; });
 }
 
 void add_campaign(CLI::App& app, Action& action) {

@@ -1,12 +1,12 @@
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cstdio>
 #include <memory>
 
 #include "app/cli/case_options.hpp"
 #include "app/cli/commands.hpp"
 #include "app/simulation.hpp"
+#include "app/teller.hpp"
 #include "base/exit_code.hpp"
 #include "simulation/body_checks.hpp"
 #include "validation/validation.hpp"
@@ -44,18 +44,9 @@ void add_validate(CLI::App& app, Action& action) {
           .load = [](const std::string& path) { return load_checked(path); },
           .run = [&](const Case& c,
                      const std::filesystem::path& directory) { return result_of(c, directory, o->threads); }};
-      const std::vector<std::string> names = names_of(files);
-      std::vector<Validation> done;
-      for (std::size_t n = 0; n < files.size(); ++n) {
-        fmt::print(stderr, "[{}/{}] {}\n", n + 1, files.size(), files[n].string());
-        done.push_back(validate_case(files[n].string(), names[n], o->out, runner));
-        if (done.back().failure == "stopped") break;
-      }
+      const std::vector<Validation> done = validate_cases(files, o->out, runner, print_note);
       fmt::print("{}", validation_table(done));
-      if (!done.empty() && done.back().failure == "stopped") return int{exit_stopped};
-      return std::all_of(done.begin(), done.end(), [](const Validation& v) { return v.pass(); })
-                 ? int{exit_done}
-                 : int{exit_validation};
+      return int{exit_code_of(done)};
     };
   });
 }

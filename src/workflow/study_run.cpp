@@ -1,4 +1,4 @@
-#include "app/study_runs.hpp"
+#include "workflow/study_run.hpp"
 
 #include "base/error.hpp"
 #include "simulation/run.hpp"

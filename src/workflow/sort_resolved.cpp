@@ -1,16 +1,17 @@
 #include <filesystem>
 
-#include "app/sort_runs.hpp"
 #include "simulation/forecast.hpp"
 #include "simulation/sorter_correction.hpp"
 #include "study/local.hpp"
 #include "study/study.hpp"
+#include "workflow/sort.hpp"
 
 namespace ejecta {
 
 nlohmann::ordered_json resolve_shots(const Case& c, const Sorter& sorter, const SorterState& state,
-                                     const std::filesystem::path& directory, const ResolvedOptions& o) {
-  const DrawnShots drawn = draw_shots(c, sorter, state, o.shots);
+                                     const std::filesystem::path& directory, const SortOptions& o,
+                                     const Attendance& who) {
+  const DrawnShots drawn = draw_shots(c, sorter, state, o.resolved);
   std::vector<NewTask> runs;
   for (const DrawnShots::Run& run : drawn.runs)
     runs.push_back({resolved_case(c, run.shot),
@@ -24,10 +25,10 @@ nlohmann::ordered_json resolve_shots(const Case& c, const Sorter& sorter, const 
     const StudyDriver driver(store);
     store.ask_to_stop(false);
     if (!run_locally(store, tasks,
-                     {.program = std::filesystem::read_symlink("/proc/self/exe"),
+                     {.program = o.program,
                       .at_once = runs_side_by_side(runs.front().resolved),
                       .threads = 1,
-                      .stop = o.stop,
+                      .stop = who.stop,
                       .look = {}}))
       return nullptr;
   }
