@@ -38,9 +38,11 @@ def largest_differences(a, b):
 
 with tempfile.TemporaryDirectory() as folder:
     here = pathlib.Path(folder)
-    for file in CASE.parent.glob("*.toml"):  # without the stored jets, and without what else the jet's case compares
+    for file in CASE.parent.rglob("*.toml"):  # without the stored jets, and without what else the jet's case compares
         text = file.read_text().replace("compare_incompressible = true", "compare_incompressible = false")
-        (here / file.name).write_text(text)
+        copy = here / file.relative_to(CASE.parent)
+        copy.parent.mkdir(exist_ok=True)
+        copy.write_text(text)
     environment = {**os.environ, "EJECTA_CACHE": str(here / "cache")}
     command = [EJECTA, "jet", str(here / CASE.name), "--out", str(here / "jet.run"), "--quiet"]
     subprocess.run(command, check=True, env=environment)
