@@ -109,7 +109,10 @@ FlightEnd FastFlight::fly(const FeedParticle& p, double at, double y, std::span<
   const FlightState start = launch_state(launch_, Vec3::Zero(), gravity, time - at);
   State s{.position = start.position + Vec3(0, y, 0),
           .velocity = start.velocity,
-          .orientation = Quat(Eigen::AngleAxisd(p.yaw, Vec3::UnitZ())) * p.prototype->resting};
+          .spin = p.spin,
+          .orientation = p.turned * orientation_of(p)};
+  const double left_belt = at - launch_.drop_distance / launch_.belt_speed;
+  turn(s.orientation, (time - left_belt) * s.spin);
   end.path_from = time;
   double fell = 0.0;  // m/s, by gravity
   const double v0 = s.velocity.z();

@@ -190,7 +190,7 @@ SortedStretch Sorter::sort(std::int64_t first, std::int64_t last, int show) cons
     Tally::Kind& kind = tally->kinds[static_cast<std::size_t>(p.kind)];
     kind.number[static_cast<std::size_t>(fate)] += 1.0;
     kind.mass[static_cast<std::size_t>(fate)] += p.mass;
-    kind.area += p.prototype->area * p.scale * p.scale;
+    kind.area += plan_area(p);
     kind.alone += single[n];
     const int o = s.object_of[n];
     kind.alone_seen += o >= 0 && s.objects[static_cast<std::size_t>(o)].members.size() == 1;
