@@ -162,8 +162,7 @@ std::vector<FeedParticle> Feeder::run(std::vector<FeedParticle> tray, std::size_
     if (r.which < wanted) --coming;
   };
 
-  for (auto look = static_cast<std::int64_t>(std::floor(enters(order[0]) / kLook));
-       coming > 0; ++look) {
+  for (auto look = static_cast<std::int64_t>(std::floor(enters(order[0]) / kLook)); coming > 0; ++look) {
     const double time = static_cast<double>(look) * kLook;
     for (; next < order.size() && enters(order[next]) <= time; ++next) {
       const FeedParticle& p = tray[order[next]];

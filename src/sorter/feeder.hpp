@@ -23,7 +23,7 @@ class Feeder {
   /// s, from the lip to the camera, of a particle that falls, lands without a bounce and slips to rest.
   double delay() const { return delay_; }
   double early() const;                 ///< s: nobody comes sooner than after `delay` by more
-  static constexpr double kLate = 1.5;  ///< s: who is later by more is said to come never
+  static constexpr double kLate = 0.7;  ///< s: who is later by more is said to come never
 
  private:
   struct Scene;

@@ -40,7 +40,8 @@ struct Ejection {
   std::function<FlightEnd(const FeedParticle& particle, double at, double y, std::span<const Blow> blows,
                           bool keep_path)>
       fly;
-  double reach = 0.0;  ///< m, across, from a body's outside to the axis of a valve that it may feel
+  std::function<double(const FeedParticle& particle)>
+      reach;  ///< m, across, to the axis of a valve it may feel
 };
 /// The fast tier with the jet of the case.
 Ejection fast_ejection(const Case& c, const JetSource& source);

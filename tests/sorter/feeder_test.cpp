@@ -4,9 +4,11 @@
 
 #include <cmath>
 #include <map>
+#include <numbers>
 
 #include "base/parallel.hpp"
 #include "case/load.hpp"
+#include "sorter/alone.hpp"
 #include "sorter/feed.hpp"
 
 using namespace ejecta;
@@ -124,6 +126,44 @@ TEST(Feeder, ARunInOfOneBatchSuffices) {
   ASSERT_EQ(one.size(), two.size());
   EXPECT_GT(one.size(), 2u);
   for (const auto& [id, p] : one) EXPECT_TRUE(same_bits(p, two.at(id))) << id;
+}
+
+/// Where particles are drawn independently, of squares of this size exp(-n E) stand alone; those that lay
+/// beside each other on the tray are drawn apart by the belt.
+TEST(Feeder, ParticlesStandAloneMoreOftenThanByChance) {
+  Case c = narrow_belt();
+  c.sorter.throughput *= 4.0;
+  const Feed feed(c);
+  const FeederStream stream(c, feed.classes(), feed.cell_length(),
+                            [&](std::int64_t batch) { return feed.laid(batch, batch + 1); });
+  std::vector<FeedParticle> list;
+  for (std::int64_t batch = 0; batch < FeederStream::kBatches; ++batch)
+    for (const FeedParticle& p : stream.batch(batch)) list.push_back(p);
+  const std::vector<bool> single = standing_alone(list, c.camera.gap);
+  double alone = 0.0, count = 0.0;
+  for (std::size_t n = 0; n < list.size(); ++n)
+    if (list[n].x > 0.6 && list[n].x < 3.4) {
+      alone += single[n];
+      count += 1.0;
+    }
+  const double a = 20e-3, gap = c.camera.gap,
+               excluded = 2 * a * a + 16 * a * a / (2 * std::numbers::pi) + 8 * a * gap +
+                          std::numbers::pi * gap * gap,
+               per_m2 = feed.mean_count() / feed.cell_length() / c.sorter.belt_width,
+               law = std::exp(-per_m2 * excluded);
+  EXPECT_GT(count, 50.0);
+  EXPECT_GT(alone / count, law + 3.0 * std::sqrt(law * (1.0 - law) / count));
+}
+
+TEST(Feeder, IsRefusedWhereItsTrayCannotCarryTheFeed) {
+  Case c = narrow_belt();
+  c.feed.lip_speed = 0.05;
+  const std::vector<Problem> problems = check_feed(c);
+  ASSERT_EQ(problems.size(), 1u);
+  EXPECT_EQ(problems[0].key, "sorter.feed.lip_speed");
+  c.feed.lip_speed = 0.2;  // as it is told
+  EXPECT_NE(problems[0].expected.find("0.1"), std::string::npos) << problems[0].expected;
+  EXPECT_TRUE(check_feed(c).empty());
 }
 
 }  // namespace
