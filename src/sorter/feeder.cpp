@@ -139,6 +139,15 @@ std::vector<FeedParticle> Feeder::run(std::vector<FeedParticle> tray, std::size_
   const auto enters = [&](std::size_t n) { return (tray[n].x - ride) / u; };
   std::vector<FeedParticle> out = tray;
   std::size_t next = 0, coming = wanted;
+  const double longest =
+      delay_ + 2.0 * kLate + (end_x_ - camera_x_) / v;  // s, from the lip to the belt's end
+  const auto come_never = [&](const FeedParticle& p) {
+    throw InputError(fmt::format(
+        "a particle of \"{}\" comes to the camera more than {:.2g} s after the others: it rolls or slips "
+        "without end\n"
+        "  expected: more material.friction or rolling_friction, or a smaller sorter.feed.lip_distance",
+        (*classes_)[static_cast<std::size_t>(p.kind)].spec().name, kLate));
+  };
   const auto leave = [&](std::size_t rider, double time, double vx) {
     const Scene::Rider& r = s.riders[rider];
     const Body& b = s.dem.bodies()[rider];
@@ -147,6 +156,7 @@ std::vector<FeedParticle> Feeder::run(std::vector<FeedParticle> tray, std::size_
     const double seen_at = r.seen ? r.seen_at : time + (camera_x_ - b.position.x()) / vx;
     const Quat seen_turn = r.seen ? r.seen_turn : b.orientation;
     const double y = r.seen ? p.y : b.position.y();
+    if (seen_at > tray[r.which].x / u + delay_ + kLate) come_never(p);  // no cell would look for it
     p.x = v * (seen_at - delay_);
     p.beside += b.position.y() - y;
     p.y = y;
@@ -183,7 +193,8 @@ std::vector<FeedParticle> Feeder::run(std::vector<FeedParticle> tray, std::size_
       FeedParticle& p = out[r.which];
       const double slips =
           (b.velocity - Vec3(v, 0, 0)).norm() + b.angular_velocity.norm() * b.shape.bounding_radius();
-      r.still = slips < kStill ? r.still + kLook : 0.0;
+      const bool fell = b.position.z() < case_.feed.lip_height;  // not on a tray that is as fast as the belt
+      r.still = fell && slips < kStill ? r.still + kLook : 0.0;
       if (!r.seen && b.position.x() >= camera_x_) {
         r.seen = true;
         const double since = (b.position.x() - camera_x_) / b.velocity.x();
@@ -192,12 +203,7 @@ std::vector<FeedParticle> Feeder::run(std::vector<FeedParticle> tray, std::size_
         p.y = b.position.y() - since * b.velocity.y();
         p.slip = v - b.velocity.x();
       }
-      if (now - tray[r.which].x / u > delay_ + kLate)
-        throw InputError(
-            fmt::format("a particle of \"{}\" has not come to the end of the belt {:.2g} s after it left the "
-                        "feeder: it rolls or slips\n"
-                        "  expected: more material.friction or rolling_friction, or a shorter belt",
-                        (*classes_)[static_cast<std::size_t>(p.kind)].spec().name, delay_ + kLate));
+      if (now > tray[r.which].x / u + longest) come_never(p);
     }
     // Who rests is taken out, and rides on, as soon as nobody moves near it.
     const auto is_disturbed = [&](std::size_t n) {

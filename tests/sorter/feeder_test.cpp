@@ -66,6 +66,18 @@ TEST(Feeder, AFlatBoxSlidesToRestWhereFrictionBringsIt) {
   EXPECT_GT(early.late, 5e-3);
 }
 
+/// On a tray as fast as the belt nothing slips; what falls from it is still what falls.
+TEST(Feeder, ATrayAsFastAsTheBeltDoesNotStandForIt) {
+  Case c = behind_a_feeder(1.0);
+  c.feed.lip_speed = c.launch.belt_speed;
+  c.feed.lip_height = 30e-3;
+  const std::vector<ParticleClass> kinds{ParticleClass(c.classes[0], "", 1)};
+  FeedParticle p = on_tray(kinds[0], 0.3, 0.05);
+  p = Feeder(c, kinds).run({p}, 1).at(0);
+  EXPECT_NE(p.tilt.coeffs(), Quat::Identity().coeffs());  // it tipped over the lip
+  EXPECT_NEAR(p.x, 0.3, 0.03);
+}
+
 std::map<std::uint64_t, FeedParticle> by_id(const std::vector<FeedParticle>& list) {
   std::map<std::uint64_t, FeedParticle> map;
   for (const FeedParticle& p : list) EXPECT_TRUE(map.emplace(p.id, p).second) << "twice: " << p.id;
