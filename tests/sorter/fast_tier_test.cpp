@@ -129,10 +129,10 @@ TEST(FastFlight, HasTheResolvedGainsBesideTheMiddle) {
     double most;  ///< root mean square error that is no step back from docs/theory/sorter.md
   } bodies[] = {{"10 mm cube, fitted", 10e-3, 1.0, ParticleForm::box, 0.02},
                 {"20 mm cube", 20e-3, 1.0, ParticleForm::box, 0.05},
-                {"20 mm flat box", 20e-3, 0.5, ParticleForm::box, 0.2},
+                {"20 mm flat box", 20e-3, 0.5, ParticleForm::box, 0.28},
                 {"10 mm cluster, fitted", 10e-3, 1.0, ParticleForm::cluster, 0.07},
-                {"10 mm flat cluster", 10e-3, 0.5, ParticleForm::cluster, 0.2},
-                {"20 mm cluster", 20e-3, 1.0, ParticleForm::cluster, 0.2},
+                {"10 mm flat cluster", 10e-3, 0.5, ParticleForm::cluster, 0.05},
+                {"20 mm cluster", 20e-3, 1.0, ParticleForm::cluster, 0.16},
                 {"20 mm flat cluster", 20e-3, 0.5, ParticleForm::cluster, 0.14}};
   const auto runs = resolved_runs();
   int n = 0;
@@ -142,7 +142,7 @@ TEST(FastFlight, HasTheResolvedGainsBesideTheMiddle) {
     const GainError e = beside_the_middle(PaperBody(b.size, b.flatness, b.form), found->second);
     std::printf("%-22s %2d gains: root mean square %4.1f %%, bias %+5.1f %%\n", b.name, e.count, 100 * e.rms,
                 100 * e.bias);
-    EXPECT_GE(e.count, 4) << b.name;
+    EXPECT_GE(e.count, 3) << b.name;
     EXPECT_LT(e.rms, b.most) << b.name;
   }
 }
