@@ -37,7 +37,7 @@ enum class Motion { free, fixed, prescribed };
 enum class ContactLaw { hertz_mindlin, linear };
 enum class WallKind { plane, plate, box, belt, mesh };
 enum class RunUntil { time, verdict, rest };
-enum class Presentation { independent, monolayer, file };
+enum class Presentation { independent, monolayer, feeder, file };
 enum class ParticleForm { box, rock, sphere, cluster, mesh };
 enum class SizeLaw { one, uniform, lognormal, rosin_rammler, sieves };
 enum class WindowRule { fixed, by_size };
@@ -469,6 +469,9 @@ struct FeedSpec {
   double arrival_scatter = 0.0;  ///< s, standard deviation of when a particle comes to the jet
   double place_scatter = 0.0;    ///< m, and of where across the belt
   std::string file;              ///< CSV of places, for "file"
+  double lip_speed = 1.0;        ///< m/s, "feeder": of the particles on its tray, along the belt
+  double lip_height = 0.1;       ///< m, of the tray above the belt
+  double lip_distance = 2.0;     ///< m, along the belt from the lip to the camera's line
 };
 
 /// [[sorter.class]]: particles of one kind

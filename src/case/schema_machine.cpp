@@ -40,7 +40,15 @@ std::vector<Key> keys(FeedSpec& s) {
                    "0), size and yaw, x ascending",
            .unset = "none",
            .example = "\"log.csv\"",
-           .file = true}};
+           .file = true},
+          decisive(Key{"lip_speed", &s.lip_speed, velocity, positive,
+                       "Feeder: speed of the particles on its tray, along the belt",
+                       "assumption: the paper does not describe its feeder"}),
+          decisive(Key{"lip_height", &s.lip_height, length, positive, "Feeder: its tray above the belt",
+                       "assumption: the paper does not describe its feeder"}),
+          decisive(Key{"lip_distance", &s.lip_distance, length, positive,
+                       "Feeder: along the belt from its lip to the camera's line",
+                       "assumption: the paper does not give the length of its belt"})};
 }
 
 std::vector<Key> keys(ParticleClassSpec& s) {

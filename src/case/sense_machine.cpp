@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <set>
@@ -138,6 +139,43 @@ void check_manifold(const Case& c, Findings& found) {
                 "line_diameter = \"10 mm\"");
 }
 
+/// Whether particles can fall from the lip, land ahead of the camera, and come to rest. `longest`: m, of
+/// them.
+void check_feeder(const Case& c, double longest, Findings& found) {
+  const double g = std::abs(c.environment.gravity.z()), v = c.launch.belt_speed, u = c.feed.lip_speed;
+  if (!(c.environment.gravity.z() < 0.0) || c.environment.gravity.x() != 0.0 ||
+      c.environment.gravity.y() != 0.0)
+    return found.error("environment.gravity", "particles fall from a feeder straight down",
+                       "gravity along -z", "gravity = [\"0 m/s2\", \"0 m/s2\", \"-9.81 m/s2\"]");
+  if (c.feed.lip_height < longest)
+    found.error("sorter.feed.lip_height",
+                fmt::format("particles of up to {:.4g} mm do not pass under a lip at {:.4g} mm",
+                            1e3 * longest, 1e3 * c.feed.lip_height),
+                fmt::format("at least {:.4g} mm", 1e3 * longest),
+                fmt::format("lip_height = \"{:.0f} mm\"", 1e3 * longest + 20.0));
+  const double lands = u * std::sqrt(2.0 * c.feed.lip_height / g) + longest;
+  if (c.feed.lip_distance < lands)
+    found.error("sorter.feed.lip_distance",
+                fmt::format("particles fly over the camera: they land {:.4g} mm behind the lip", 1e3 * lands),
+                fmt::format("at least {:.4g} mm", 1e3 * lands),
+                fmt::format("lip_distance = \"{:.2g} m\"", lands + v * v / g + 0.1));
+  if (c.camera.distance < c.launch.drop_distance)
+    found.error("sorter.camera.distance",
+                "the camera of a feeder looks at the belt, not at the flight behind it",
+                fmt::format("at least launch.drop_distance, {:.4g} mm", 1e3 * c.launch.drop_distance),
+                fmt::format("distance = \"{:.0f} mm\"", 1e3 * c.launch.drop_distance + 200.0));
+  const MaterialSpec material = c.materials.empty() ? MaterialSpec{} : c.materials.front();
+  if (!(material.friction > 0.0))
+    found.error("material.0.friction", "the belt cannot speed particles up that it does not rub on",
+                "more than 0", "friction = 0.5");
+  const bool any_round = std::any_of(c.classes.begin(), c.classes.end(), [](const ParticleClassSpec& k) {
+    return k.form == ParticleForm::sphere;
+  });
+  if (any_round && !(material.rolling_friction > 0.0))
+    found.error("material.0.rolling_friction", "spheres that fall on a running belt roll on it without end",
+                "more than 0", "rolling_friction = 0.1");
+}
+
 void check_devices(const Case& c, Findings& found) {
   // All of an object must have passed the camera, and be thought about, before its first command.
   const double v = c.launch.belt_speed, there = c.camera.distance / v;
@@ -166,6 +204,15 @@ void check_devices(const Case& c, Findings& found) {
   if (c.feed.presentation != Presentation::file && !c.feed.file.empty())
     found.error("sorter.feed.file", "`file` does nothing here: it belongs to presentation = \"file\"",
                 "presentation = \"file\", or no file", "presentation = \"file\"");
+  if (c.feed.presentation == Presentation::feeder) {
+    check_feeder(c, longest, found);
+  } else {
+    for (const char* key : {"lip_speed", "lip_height", "lip_distance"})
+      if (c.given.contains(fmt::format("sorter.feed.{}", key)))
+        found.error(fmt::format("sorter.feed.{}", key),
+                    fmt::format("`{}` does nothing here: it belongs to presentation = \"feeder\"", key),
+                    fmt::format("presentation = \"feeder\", or no {}", key), "presentation = \"feeder\"");
+  }
   if (c.feed.presentation == Presentation::file) {
     std::error_code none;
     if (c.feed.file.empty() || !std::filesystem::is_regular_file(beside_case(c, c.feed.file), none))

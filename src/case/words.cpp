@@ -136,6 +136,8 @@ const std::vector<Word>& words(Presentation) {
   static const std::vector<Word> list{
       {"independent", "each particle anywhere, whatever lies there (a Poisson process): the worst case"},
       {"monolayer", "anywhere but not on each other"},
+      {"feeder",
+       "as they come to rest: a monolayer on a tray, over its lip, on the running belt, contacts computed"},
       {"file", "where the CSV `file` says, as a camera logs it"}};
   return list;
 }

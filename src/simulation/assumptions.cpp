@@ -18,6 +18,8 @@ bool acts(const Case& c, const std::string& section, std::size_t element, const 
     const bool law = key == "duration" || key == "rise_time" || key == "fall_time";
     return jet && !(law && c.valve.shape == ValveShape::trace);
   }
+  if (section == "sorter.feed" && key.starts_with("lip_"))
+    return c.sorter.enabled && c.feed.presentation == Presentation::feeder;
   if (section.starts_with("sorter")) return c.sorter.enabled;
   if (section == "jet") return jet && c.jet.kind == JetKind::self_similar;
   if (section == "flow") return jet;  // laminar by default: of a jet hardly what is meant

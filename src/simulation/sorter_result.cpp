@@ -93,11 +93,14 @@ SorterState sorter_state(const Json& json, std::size_t kinds) {
 
 Json sorter_result(const Case& c, const Sorter& sorter, const SorterState& state) {
   const Tally& total = state.products.total;
-  double particles = 0.0, mass = 0.0, area = 0.0, ejected_mass = 0.0, kept_mass = 0.0, ejected = 0.0;
+  double particles = 0.0, mass = 0.0, area = 0.0, slipping = 0.0, late_squares = 0.0, ejected_mass = 0.0,
+         kept_mass = 0.0, ejected = 0.0;
   for (std::size_t k = 0; k < total.kinds.size(); ++k) {
     particles += total.number(k);
     mass += total.mass(k);
     area += total.kinds[k].area;
+    slipping += total.kinds[k].slipping;
+    late_squares += total.kinds[k].late_squares;
     for (std::size_t f = 0; f < kFates; ++f) {
       const bool out = goes_to_ejects(static_cast<Fate>(f));
       (out ? ejected_mass : kept_mass) += total.kinds[k].mass[f];
@@ -114,6 +117,8 @@ Json sorter_result(const Case& c, const Sorter& sorter, const SorterState& state
          {"throughput_t_h", over(3.6 * mass, time)},
          {"throughput_asked_t_h", 3.6 * c.sorter.throughput},
          {"cover", over(area, total.length * c.sorter.belt_width)}};
+  r["slipping_at_camera"] = over(slipping, particles);
+  r["arrival_error_s"] = std::sqrt(over(late_squares, particles));
   for (std::size_t n = 0; n < ratio_names.size(); ++n)
     put_share(r, ratio_names[n], state.products.sums[n].share());
   r["products"] = {{"ejected", {{"particles", ejected}, {"mass_kg", ejected_mass}}},

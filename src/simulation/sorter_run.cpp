@@ -72,6 +72,7 @@ bool run_sorter(const Case& c, const Sorter& sorter, std::int64_t cells, SorterS
     const auto pieces = static_cast<int>((until - state.cells + kSorterPiece - 1) / kSorterPiece);
     std::vector<SortedStretch> sorted(static_cast<std::size_t>(pieces));
     std::vector<std::string> failed(static_cast<std::size_t>(pieces));
+    sorter.prepare(state.cells, until);
     for_each_index_dynamic(pieces, [&](int n) {
       const std::int64_t first = state.cells + n * kSorterPiece;
       try {

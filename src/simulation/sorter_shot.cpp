@@ -44,9 +44,10 @@ BodySpec body_of(const Case& c, const ShotBody& shot_body, std::size_t n) {
       b.file = k.file;
       b.scale = p.scale * p.prototype->file_scale;
   }
-  const Eigen::AngleAxisd turned(Quat(Eigen::AngleAxisd(p.yaw, Vec3::UnitZ())) * p.prototype->resting);
+  const Eigen::AngleAxisd turned(p.turned * orientation_of(p));
   b.rotation_axis = turned.axis();
   b.rotation_angle = turned.angle();
+  b.spin = p.spin;
   b.along =
       c.launch.belt_speed * (c.launch.arrives_at - c.valve.opens_at - shot_body.at) - c.launch.offset_along;
   b.across = shot_body.y - c.launch.offset_across;

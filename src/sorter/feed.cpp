@@ -91,11 +91,17 @@ Feed::Feed(const Case& c) : sorter_(c.sorter), feed_(c.feed) {
     classes_.emplace_back(c.classes[k], folder_of(c), c.sorter.seed + 7919 * static_cast<std::int64_t>(k));
     largest = std::max(largest, classes_[k].size_at(1.0 - 1e-6) / c.classes[k].elongation);
   }
-  cell_length_ = std::max(kCell, kCellOverSize * largest);
+  const bool feeder = feed_.presentation == Presentation::feeder;
+  const double tray = feeder ? feed_.lip_speed / c.launch.belt_speed : 1.0;
+  cell_length_ = std::max(kCell, kCellOverSize * largest / std::min(tray, 1.0));
+  laid_length_ = tray * cell_length_;
   for (const ParticleClass& k : classes_)
     mean_count_.push_back(c.sorter.throughput * k.spec().share / k.mean_mass() / c.launch.belt_speed *
                           cell_length_);
   if (feed_.presentation == Presentation::file) read_file(beside_case(c, feed_.file));
+  if (feeder)
+    feeder_ = std::make_unique<FeederStream>(c, classes_, cell_length_,
+                                             [this](std::int64_t batch) { return laid(batch, batch + 1); });
 }
 
 void Feed::read_file(const std::string& file) {
@@ -168,10 +174,10 @@ std::vector<FeedParticle> Feed::drawn(std::int64_t cell) const {
 void Feed::place(std::int64_t cell, std::vector<FeedParticle>& particles,
                  const std::vector<FeedParticle>& beside) const {
   const CounterRandom random = stream_of(sorter_.seed, cell, places);
-  const double from = static_cast<double>(cell) * cell_length_;
+  const double from = static_cast<double>(cell) * laid_length_;
   std::uint64_t at = 0;
   const auto draw = [&](FeedParticle& p, double radius) {
-    p.x = from + cell_length_ * random.uniform(at++);
+    p.x = from + laid_length_ * random.uniform(at++);
     p.y = (sorter_.belt_width - 2.0 * radius) * (random.uniform(at++) - 0.5);
   };
   if (feed_.presentation == Presentation::independent) {
@@ -196,9 +202,10 @@ void Feed::place(std::int64_t cell, std::vector<FeedParticle>& particles,
     do {
       if (++tries > kTries)
         throw InputError(
-            fmt::format("the belt cannot carry the feed as a monolayer: no place was found for a particle "
-                        "of {:.3g} mm\n  expected: less sorter.throughput",
-                        1e3 * p.size()));
+            fmt::format("the {} cannot carry the feed as a monolayer: no place was found for a particle "
+                        "of {:.3g} mm\n  expected: less sorter.throughput{}",
+                        feeder_ ? "feeder's tray" : "belt", 1e3 * p.size(),
+                        feeder_ ? " or more sorter.feed.lip_speed" : ""));
       draw(p, radius[n]);
     } while (!laid.is_free(p, radius[n]));
     laid.add(p);
@@ -219,7 +226,11 @@ std::vector<FeedParticle> Feed::cells(std::int64_t first, std::int64_t last) con
     };
     return {from(first), from(last)};
   }
-  const bool monolayer = feed_.presentation == Presentation::monolayer;
+  return feeder_ ? feeder_->cells(first, last) : laid(first, last);
+}
+
+std::vector<FeedParticle> Feed::laid(std::int64_t first, std::int64_t last) const {
+  const bool monolayer = feed_.presentation != Presentation::independent;
   std::vector<FeedParticle> all, before, after;
   std::optional<std::int64_t> have;  // the cell that `after` holds
   for (std::int64_t cell = first; cell < last; ++cell) {
@@ -302,7 +313,7 @@ std::vector<Problem> check_feed(const Case& c) {
                         .example = fmt::format("throughput = \"{:.2g} t/h\"",
                                                3.6 * 0.05 * belt_carries(c) / area_per_mass)});
   const double belt = belt_carries(c), cover = c.sorter.throughput * area_per_mass / belt;
-  const double most = c.feed.presentation == Presentation::monolayer ? kMostCover : 1.0;
+  const double most = c.feed.presentation == Presentation::independent ? 1.0 : kMostCover;
   if (cover > most)
     problems.push_back(
         {.key = "sorter.throughput",
@@ -310,6 +321,17 @@ std::vector<Problem> check_feed(const Case& c) {
          .expected = fmt::format("at most {:.3g} t/h, a cover of {:.0f} %", 3.6 * most * belt / area_per_mass,
                                  100 * most),
          .example = fmt::format("throughput = \"{:.2g} t/h\"", 3.6 * 0.5 * most * belt / area_per_mass)});
+  const double on_tray = cover * c.launch.belt_speed / c.feed.lip_speed;
+  if (problems.empty() && c.feed.presentation == Presentation::feeder && on_tray > kMostCover)
+    problems.push_back(
+        {.key = "sorter.feed.lip_speed",
+         .what = fmt::format(
+             "the feeder's tray cannot carry it in one layer: particles would cover {:.0f} % of it",
+             100 * on_tray),
+         .expected = fmt::format("at least {:.3g} m/s, a cover of {:.0f} %",
+                                 on_tray / kMostCover * c.feed.lip_speed, 100 * kMostCover),
+         .example =
+             fmt::format("lip_speed = \"{:.2g} m/s\"", on_tray / (0.8 * kMostCover) * c.feed.lip_speed)});
   return problems;
 }
 

@@ -6,19 +6,28 @@
 #include "base/random.hpp"
 #include "case/case.hpp"
 #include "case/problem.hpp"
+#include "sorter/feeder_stream.hpp"
 #include "sorter/particle_class.hpp"
 
 namespace ejecta {
 
 /// The feed as it lies on the belt: an endless strip, cut into cells of one length. What lies in a cell is a
-/// function of the seed and the cell's number alone (of a monolayer: of its two neighbours' too), so that any
-/// part of the strip can be made at any time.
+/// function of the seed and the cell's number alone (of a monolayer: of its two neighbours' too; of a feeder:
+/// sorter/feeder_stream.hpp), so that any part of the strip can be made at any time.
 class Feed {
  public:
   explicit Feed(const Case& c);
+  Feed(const Feed&) = delete;  // its feeder asks it for what lies on the tray
+  Feed& operator=(const Feed&) = delete;
 
   /// Particles whose centres lie in [x of cell `first`, x of cell `last`), cell after cell.
   std::vector<FeedParticle> cells(std::int64_t first, std::int64_t last) const;
+  /// The same as they are laid: of a feeder on its tray, x from the lip.
+  std::vector<FeedParticle> laid(std::int64_t first, std::int64_t last) const;
+  /// Of a feeder: computes what these cells need, on all threads.
+  void prepare(std::int64_t first, std::int64_t last) const {
+    if (feeder_) feeder_->prepare(first, last);
+  }
   double cell_length() const { return cell_length_; }
   std::int64_t cell_of(double x) const { return static_cast<std::int64_t>(std::floor(x / cell_length_)); }
   /// Expected number of particles of a class a cell.
@@ -42,6 +51,9 @@ class Feed {
   std::vector<double> mean_count_;
   std::vector<FeedParticle> file_;  ///< x ascending
   double cell_length_ = 0.0;
+  double laid_length_ =
+      0.0;  ///< m, of a cell where its particles are laid: on the belt, or on a feeder's tray
+  std::unique_ptr<const FeederStream> feeder_;
 };
 
 /// What is wrong with the feed that a case asks for: shares, sizes, more than the belt carries.

@@ -21,6 +21,7 @@ struct Prototype {
   Vec3 inertia{0, 0, 0};               ///< m5, principal, of unit density
   double height = 0.0;                 ///< m, as it lies
   double area = 0.0, perimeter = 0.0;  ///< m2, m: of its outline from above
+  std::vector<Vec3> corners{};         ///< m, of its convex hull, body axes
   std::vector<Vec3> outline{};         ///< m, from above, counter-clockwise, about the centre of mass (z = 0)
   /// The surface in small pieces, body axes: point and area times outward normal, m and m2.
   struct Piece {
@@ -34,18 +35,26 @@ struct FeedParticle {
   std::uint64_t id = 0;
   int kind = 0;  ///< class
   const Prototype* prototype = nullptr;
-  double scale = 1.0;       ///< size over that of the prototype
-  double x = 0.0, y = 0.0;  ///< m, centre of mass; y from the middle of the belt
-  double yaw = 0.0;         ///< rad, about z as it flies, x along the motion
-  double mass = 0.0;        ///< kg
+  double scale = 1.0;            ///< size over that of the prototype
+  double x = 0.0, y = 0.0;       ///< m, centre of mass; y from the middle of the belt
+  double yaw = 0.0;              ///< rad, about z as it flies, x along the motion
+  Quat tilt = Quat::Identity();  ///< before that: where it does not lie as it rests
+  double mass = 0.0;             ///< kg
   double signal = 0.0;
   double late = 0.0, beside = 0.0;  ///< s, m: what it comes later and farther across than it was seen
+  double slip = 0.0;                ///< m/s, that it is slower than the belt as it is seen
+  Quat turned = Quat::Identity();   ///< between being seen and leaving the belt
+  Vec3 spin{0, 0, 0};               ///< rad/s, as it leaves the belt
 
   double size() const { return scale * prototype->size; }
 };
 
+/// Body axes -> as it lies on the belt where it is seen (x along the motion).
+Quat orientation_of(const FeedParticle& p);
+
 /// Its outline on the belt, m.
 std::vector<Vec3> outline_of(const FeedParticle& p);
+double plan_area(const FeedParticle& p);  ///< m2, of it
 
 /// What the camera makes out.
 struct SeenObject {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 
 #include "dem/rotation.hpp"
 #include "sorter/launch.hpp"
@@ -37,22 +38,30 @@ FastFlight::FastFlight(const Case& c, const JetField& field, const AirCoefficien
 }
 
 bool FastFlight::may_meet(const FeedParticle& p, double at, double y, const Blow& blow) const {
-  const double away = reach(bounding_radius(p));
+  const double away = reach(p);
   if (std::abs(y - blow.y) > away) return false;
   const double passes = away / launch_.belt_speed;
   return blow.pulse.from < at + passes &&
          blow.pulse.from + field_.still_from(2.0 * height_, blow.pulse.to - blow.pulse.from) > at - passes;
 }
 
-void FastFlight::push(State& s, const FeedParticle& p, std::span<const Blow> blows, double time,
-                      double dt) const {
+double FastFlight::widening(const FeedParticle& p) const {
+  return coefficients_.widening(p, height_ * field_.half_radius());
+}
+
+double FastFlight::reach(const FeedParticle& p) const {
+  return bounding_radius(p) + widening(p) * field_.reach(height_);
+}
+
+void FastFlight::push(State& s, const FeedParticle& p, std::span<const Blow> blows, double widening,
+                      double time, double dt) const {
   const Prototype& proto = *p.prototype;
   const Mat3 turn = s.orientation.toRotationMatrix();
   const double whole_coefficient = coefficients_.of(p), front = coefficients_.front * whole_coefficient,
                back = whole_coefficient - front;
   const double area_scale = p.scale * p.scale;
   Vec3 force = Vec3::Zero(), torque = Vec3::Zero();
-  const double radius = bounding_radius(p), far = radius + field_.reach(s.position.z() + radius);
+  const double radius = bounding_radius(p), far = radius + widening * field_.reach(s.position.z() + radius);
   std::array<const Blow*, kMostBlows> near{};
   std::size_t count = 0;
   for (const Blow& blow : blows) {
@@ -68,7 +77,8 @@ void FastFlight::push(State& s, const FeedParticle& p, std::span<const Blow> blo
     for (std::size_t n = 0; n < count; ++n) {
       const Blow& blow = *near[n];
       const double dx = at.x(), dy = at.y() - blow.y, r = std::sqrt(dx * dx + dy * dy);
-      const JetField::Air air = field_.at(r, at.z(), time - blow.pulse.from, blow.pulse.to - blow.pulse.from);
+      const JetField::Air air =
+          field_.at(r, at.z(), time - blow.pulse.from, blow.pulse.to - blow.pulse.from, widening);
       if (air.axial == 0.0) continue;
       const double inverse = r > 1e-9 ? air.radial / r : 0.0;
       const Vec3 u(inverse * dx, inverse * dy, air.axial);
@@ -102,14 +112,17 @@ FlightEnd FastFlight::fly(const FeedParticle& p, double at, double y, std::span<
       from = std::min(from, b.pulse.from);
       until = std::max(until, b.pulse.from + field_.still_from(2.0 * height_, b.pulse.to - b.pulse.from));
     }
-  const double passes = reach(bounding_radius(p)) / launch_.belt_speed;
-  from = std::max(from, at - passes);
+  const double away = reach(p), wide = widening(p);
+  from = std::max(from, at - away / launch_.belt_speed);
   FlightEnd end;
   double time = near.empty() ? at : from;
   const FlightState start = launch_state(launch_, Vec3::Zero(), gravity, time - at);
   State s{.position = start.position + Vec3(0, y, 0),
           .velocity = start.velocity,
-          .orientation = Quat(Eigen::AngleAxisd(p.yaw, Vec3::UnitZ())) * p.prototype->resting};
+          .spin = p.spin,
+          .orientation = p.turned * orientation_of(p)};
+  const double left_belt = at - launch_.drop_distance / launch_.belt_speed;
+  turn(s.orientation, (time - left_belt) * s.spin);
   end.path_from = time;
   double fell = 0.0;  // m/s, by gravity
   const double v0 = s.velocity.z();
@@ -118,12 +131,11 @@ FlightEnd FastFlight::fly(const FeedParticle& p, double at, double y, std::span<
     end.path.push_back(s.position);
     next += kPathStep;
   };
-  while (!near.empty() && time < until && s.position.x() < reach(bounding_radius(p)) &&
-         s.position.x() < edge_x_) {
+  while (!near.empty() && time < until && s.position.x() < away && s.position.x() < edge_x_) {
     note();
     s.position += 0.5 * kAirStep * s.velocity;
     turn(s.orientation, 0.5 * kAirStep * s.spin);
-    push(s, p, near, time + 0.5 * kAirStep, kAirStep);
+    push(s, p, near, wide, time + 0.5 * kAirStep, kAirStep);
     s.velocity.z() += kAirStep * gravity_;
     fell += kAirStep * gravity_;
     s.position += 0.5 * kAirStep * s.velocity;
@@ -151,6 +163,12 @@ double AirCoefficients::of(const FeedParticle& p) const {
   const double at = std::clamp((p.size() - small) / (large - small), 0.0, 1.0);
   return p.prototype->sharp ? sharp_small + at * (sharp_large - sharp_small)
                             : round_small + at * (round_large - round_small);
+}
+
+double AirCoefficients::widening(const FeedParticle& p, double half_radius) const {
+  if (p.prototype->sharp || !(half_radius > 0.0)) return sharp_widening;
+  return std::hypot(1.0,
+                    round_spread * p.scale * std::sqrt(p.prototype->area / std::numbers::pi) / half_radius);
 }
 
 }  // namespace ejecta

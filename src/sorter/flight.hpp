@@ -14,12 +14,16 @@ namespace ejecta {
 /// of which none is a shot of a sorter; linear between them, constant beyond.
 struct AirCoefficients {
   double small = 10e-3, large = 20e-3;              ///< m, the two sizes
-  double sharp_small = 1.02, sharp_large = 0.88;    ///< of flat faces with edges: front and back together
-  double round_small = 0.705, round_large = 0.472;  ///< of round surfaces
-  double front = 2.0 / 3.0;  ///< part of it on what faces the air; the rest pulls at what faces away
-  double widening = 1.5;     ///< of the jet, with the same momentum: a body spreads it over its face
+  double sharp_small = 0.824, sharp_large = 0.778;  ///< of flat faces with edges: front and back together
+  double round_small = 0.690, round_large = 0.797;  ///< of round surfaces
+  double front = 2.0 / 3.0;      ///< part of it on what faces the air; the rest pulls at what faces away
+  double sharp_widening = 1.24;  ///< of the jet on a face: the air leaves it at its edges
+  double round_spread = 1.3;     ///< the air follows a round surface, and so spreads with its radius
 
   double of(const FeedParticle& particle) const;
+  /// How much wider than a free jet of that half radius (m) the jet on the particle is, with the same
+  /// momentum. Round: sqrt(1 + (spread r/half radius)^2), r the radius of a disc as large as it from above.
+  double widening(const FeedParticle& particle, double half_radius) const;
 };
 
 /// A valve that blows, as a body meets it.
@@ -50,14 +54,17 @@ class FastFlight {
                 bool keep_path = false) const;
   static constexpr double kPathStep = 2e-3;  ///< s
 
-  /// m: blows farther across than this from the centre of a body with this radius do not reach it.
-  double reach(double radius) const { return radius + field_.reach(height_); }
+  /// m: blows farther across than this from its centre do not reach it.
+  double reach(const FeedParticle& particle) const;
   /// s before and after its passing that a body may meet air, for a command from..to
   bool may_meet(const FeedParticle& p, double at, double y, const Blow& blow) const;
 
  private:
   struct State;
-  void push(State& s, const FeedParticle& p, std::span<const Blow> blows, double time, double dt) const;
+  /// Of the jets, on that body.
+  double widening(const FeedParticle& p) const;
+  void push(State& s, const FeedParticle& p, std::span<const Blow> blows, double widening, double time,
+            double dt) const;
 
   const JetField& field_;
   AirCoefficients coefficients_;

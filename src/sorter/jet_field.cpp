@@ -15,8 +15,8 @@ constexpr double kFaint = 0.02;  ///< of the velocity on the axis: beyond it the
 
 }  // namespace
 
-JetField::JetField(const Case& c, const JetSource& source, double widening)
-    : density_(c.fluid.density), height_(jet_height(c)), stored_(c.valve.duration), widening_(widening) {
+JetField::JetField(const Case& c, const JetSource& source)
+    : density_(c.fluid.density), height_(jet_height(c)), stored_(c.valve.duration) {
   slopes_ = kSlopes;
   slope_step_ = kLargestSlope / (kSlopes - 1);
   const double begins = c.valve.opens_at;
@@ -56,10 +56,10 @@ JetField::Air JetField::stored(double slope, double t) const {
           mixed(a[0].radial, a[1].radial, b[0].radial, b[1].radial)};
 }
 
-JetField::Air JetField::at(double r, double z, double t, double lasts) const {
+JetField::Air JetField::at(double r, double z, double t, double lasts, double widening) const {
   if (z <= 0.0) return {};
-  const double since = t - lag(z), slope = r / (widening_ * z);
-  double then = since, strength = height_ / (widening_ * z);
+  const double since = t - lag(z), slope = r / (widening * z);
+  double then = since, strength = height_ / (widening * z);
   if (lasts > stored_ && since > stored_) then = std::max(stored_, since - (lasts - stored_));
   if (lasts < stored_ && since > lasts) {
     then = since + (stored_ - lasts);

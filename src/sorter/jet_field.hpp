@@ -16,17 +16,17 @@ namespace ejecta {
 /// strong as it was by then.
 class JetField {
  public:
-  /// `source`: the jet of the case's valve and command. `widening`: how much wider than the free jet it is
-  /// taken to be, with the same momentum (see AirCoefficients).
-  JetField(const Case& c, const JetSource& source, double widening = 1.0);
+  /// `source`: the jet of the case's valve and command.
+  JetField(const Case& c, const JetSource& source);
 
   struct Air {
     double axial = 0.0, radial = 0.0;  ///< m/s, along the axis and away from it
   };
-  /// `r`: from the axis; `z`: above the orifice, m; `t`: since a command that lasts `lasts`, s.
-  Air at(double r, double z, double t, double lasts) const;
-  /// m, at that height: outside of it the air is still.
-  double reach(double z) const { return reach_ * widening_ * z; }
+  /// `r`: from the axis; `z`: above the orifice, m; `t`: since a command that lasts `lasts`, s. `widening`:
+  /// how much wider than the free jet it is taken to be, with the same momentum (see AirCoefficients).
+  Air at(double r, double z, double t, double lasts, double widening = 1.0) const;
+  /// m, of the free jet at that height: outside of it the air is still.
+  double reach(double z) const { return reach_ * z; }
   /// s: the air of a command that lasts `lasts` is still at height z from this time on.
   double still_from(double z, double lasts) const { return ends_ + lasts - stored_ + lag(z); }
   double density() const { return density_; }  ///< kg/m3
@@ -36,8 +36,7 @@ class JetField {
  private:
   double lag(double z) const;
   Air stored(double slope, double t) const;
-  double density_, height_, stored_, widening_, ends_ = 0.0, reach_ = 0.0, half_radius_ = 0.0,
-                                                open_velocity_ = 0.0;
+  double density_, height_, stored_, ends_ = 0.0, reach_ = 0.0, half_radius_ = 0.0, open_velocity_ = 0.0;
   double slope_step_ = 0.0, time_step_ = 0.0;
   int slopes_ = 0, times_ = 0;
   std::vector<Air> table_;

@@ -72,6 +72,7 @@ Prototype make_prototype(Shape shape, double size, bool sharp, double tolerance)
               .volume = mass.volume,
               .inertia = mass.inertia.diagonal()};
   const TriangleMesh mesh = shape.surface(tolerance);
+  p.corners = mesh.vertices;
   double low = 0.0, high = 0.0;
   std::vector<Vec3> plan;
   for (const Vec3& v : mesh.vertices) {
@@ -257,6 +258,30 @@ double ParticleClass::size_at(double u) const {
 const Prototype& ParticleClass::prototype(double u) const {
   const auto n = static_cast<std::size_t>(u * static_cast<double>(prototypes_.size()));
   return prototypes_[std::min(n, prototypes_.size() - 1)];
+}
+
+Shape ParticleClass::shape_of(const Prototype& p, double scale) const {
+  const double size = scale * p.size;
+  const Vec3 dimensions(size / spec_.elongation, size, size * spec_.flatness);
+  const auto scaled = [&](std::vector<Vec3> points) {
+    for (Vec3& v : points) v *= scale;
+    return points;
+  };
+  switch (spec_.form) {
+    case ParticleForm::box:
+      return make_box(dimensions);
+    case ParticleForm::sphere:
+      return make_sphere(size);
+    case ParticleForm::cluster:
+      return make_cluster(dimensions, {3, 3, spec_.flatness <= 0.5 ? 1 : 3}, 0.5 * size);
+    case ParticleForm::rock:
+      return make_polyhedron(scaled(p.shape.surface().vertices));
+    case ParticleForm::mesh:
+      break;
+  }
+  TriangleMesh mesh = p.shape.surface();
+  mesh.vertices = scaled(mesh.vertices);
+  return make_mesh(mesh, spec_.file);
 }
 
 }  // namespace ejecta

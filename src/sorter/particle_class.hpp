@@ -21,6 +21,10 @@ class ParticleClass {
     return spec_.density * p.volume * scale * scale * scale;
   }
 
+  /// The shape of a particle at its own size.
+  Shape shape_of(const Prototype& p, double scale) const;
+  const std::vector<Prototype>& prototypes() const { return prototypes_; }
+
   double mean_mass() const { return mean_mass_; }            ///< kg, of a particle
   double mean_area() const { return mean_area_; }            ///< m2, of outlines from above
   double mean_perimeter() const { return mean_perimeter_; }  ///< m

@@ -1,5 +1,6 @@
 #include "sorter/plan_view.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 
 #include "sorter/feed_particle.hpp"
@@ -75,7 +76,25 @@ bool within_gap(const std::vector<Vec3>& a, const std::vector<Vec3>& b, double g
   return corner_near(a, b, gap) || corner_near(b, a, gap);
 }
 
+Quat orientation_of(const FeedParticle& p) {
+  return Quat(Eigen::AngleAxisd(p.yaw, Vec3::UnitZ())) * p.tilt * p.prototype->resting;
+}
+
+double plan_area(const FeedParticle& p) {
+  return p.tilt.vec() == Vec3::Zero() ? p.scale * p.scale * p.prototype->area
+                                      : area_of_outline(outline_of(p));
+}
+
 std::vector<Vec3> outline_of(const FeedParticle& p) {
+  if (p.tilt.vec() != Vec3::Zero()) {
+    const Quat turn = orientation_of(p);
+    std::vector<Vec3> points;
+    for (const Vec3& v : p.prototype->corners) {
+      const Vec3 at = p.scale * (turn * v);
+      points.push_back({p.x - at.x(), p.y + at.y(), 0.0});
+    }
+    return convex_outline(std::move(points));
+  }
   const double c = std::cos(p.yaw), s = std::sin(p.yaw);
   std::vector<Vec3> out;
   out.reserve(p.prototype->outline.size());

@@ -12,7 +12,8 @@ namespace {
 /// s, from a particle's passing: what a valve does earlier or later it does not feel.
 constexpr double kLongest = 0.05;
 
-double outer_radius(const FeedParticle& p) { return p.scale * p.prototype->shape.bounding_radius(); }
+constexpr double kSlips =
+    10e-3;  ///< m/s, on the belt: 2 mm from the camera of the paper's machine to its jets
 
 }  // namespace
 
@@ -27,11 +28,11 @@ struct Sorter::Scene {
 
 Ejection fast_ejection(const Case& c, const JetSource& source) {
   const AirCoefficients coefficients;
-  const auto field = std::make_shared<const JetField>(c, source, coefficients.widening);
+  const auto field = std::make_shared<const JetField>(c, source);
   const auto flight = std::make_shared<const FastFlight>(c, *field, coefficients);
   return {.fly = [field, flight](const FeedParticle& p, double at, double y, std::span<const Blow> blows,
                                  bool keep_path) { return flight->fly(p, at, y, blows, keep_path); },
-          .reach = flight->reach(0.0)};
+          .reach = [flight](const FeedParticle& p) { return flight->reach(p); }};
 }
 
 Sorter::Sorter(const Case& c, Ejection ejection)
@@ -48,7 +49,7 @@ FlightEnd Sorter::fly(const FeedParticle& p, const std::vector<std::vector<Valve
                       bool keep_path) const {
   const double at = p.x / case_.launch.belt_speed + (as_seen ? 0.0 : p.late),
                y = p.y + (as_seen ? 0.0 : p.beside);
-  const double reach = outer_radius(p) + ejection_.reach, pitch = valve_pitch(case_);
+  const double reach = ejection_.reach(p), pitch = valve_pitch(case_);
   const int count = case_.manifold.valves;
   const double middle = y / pitch + 0.5 * count - 0.5;
   const int first = std::max(0, static_cast<int>(std::ceil(middle - reach / pitch))),
@@ -125,7 +126,7 @@ Shot Sorter::shot(const Scene& s, std::span<const ValveCommand> commands, std::s
   };
   for (std::size_t n = 0; n < s.particles.size(); ++n) {
     const FeedParticle& p = s.particles[n];
-    const double at = p.x / v + p.late, y = p.y + p.beside, reach = outer_radius(p) + ejection_.reach;
+    const double at = p.x / v + p.late, y = p.y + p.beside, reach = ejection_.reach(p);
     if (y < valve_place(case_, c.first) - reach || y > valve_place(case_, c.last) + reach) continue;
     const FlightEnd end = ejection_.fly(p, at, y, blows, false);
     const bool member = s.object_of[n] == c.object;
@@ -190,7 +191,9 @@ SortedStretch Sorter::sort(std::int64_t first, std::int64_t last, int show) cons
     Tally::Kind& kind = tally->kinds[static_cast<std::size_t>(p.kind)];
     kind.number[static_cast<std::size_t>(fate)] += 1.0;
     kind.mass[static_cast<std::size_t>(fate)] += p.mass;
-    kind.area += p.prototype->area * p.scale * p.scale;
+    kind.area += plan_area(p);
+    kind.slipping += std::abs(p.slip) > kSlips;
+    kind.late_squares += p.late * p.late;
     kind.alone += single[n];
     const int o = s.object_of[n];
     kind.alone_seen += o >= 0 && s.objects[static_cast<std::size_t>(o)].members.size() == 1;

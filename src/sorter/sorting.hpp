@@ -40,7 +40,8 @@ struct Ejection {
   std::function<FlightEnd(const FeedParticle& particle, double at, double y, std::span<const Blow> blows,
                           bool keep_path)>
       fly;
-  double reach = 0.0;  ///< m, across, from a body's outside to the axis of a valve that it may feel
+  std::function<double(const FeedParticle& particle)>
+      reach;  ///< m, across, to the axis of a valve it may feel
 };
 /// The fast tier with the jet of the case.
 Ejection fast_ejection(const Case& c, const JetSource& source);
@@ -53,6 +54,9 @@ class Sorter {
   Sorter(const Case& c, Ejection ejection);
   /// Cells [first, last); of the first `show` particles everything is kept.
   SortedStretch sort(std::int64_t first, std::int64_t last, int show = 0) const;
+
+  /// Computes side by side what these cells need of each other's feed: optional, for speed.
+  void prepare(std::int64_t first, std::int64_t last) const { feed_.prepare(first - 1, last + 1); }
 
   /// The shots whose objects begin in a cell, each with the particles within its reach, flown by the fast
   /// tier as if no other valve blew.

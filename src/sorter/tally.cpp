@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "base/error.hpp"
+
 namespace ejecta {
 
 const char* word(Fate fate) {
@@ -45,12 +47,17 @@ std::vector<double> Tally::values() const {
   for (const Kind& k : kinds) {
     v.insert(v.end(), k.number.begin(), k.number.end());
     v.insert(v.end(), k.mass.begin(), k.mass.end());
-    v.insert(v.end(), {k.alone, k.alone_seen, k.area});
+    v.insert(v.end(), {k.alone, k.alone_seen, k.area, k.slipping, k.late_squares});
   }
   return v;
 }
 
 Tally Tally::of_values(const std::vector<double>& values, std::size_t kinds) {
+  constexpr std::size_t kOfAll = 6, kOfKind = 2 * kFates + 5;
+  if (values.size() != kOfAll + kinds * kOfKind)
+    throw InputError(
+        "the sums kept there are those of another version of the program\n  expected: --force, to start "
+        "anew");
   Tally t;
   auto at = values.begin();
   for (double* one : {&t.length, &t.objects, &t.shots, &t.openings, &t.air, &t.cut}) *one = *at++;
@@ -58,7 +65,8 @@ Tally Tally::of_values(const std::vector<double>& values, std::size_t kinds) {
     Kind kind;
     for (double& n : kind.number) n = *at++;
     for (double& m : kind.mass) m = *at++;
-    for (double* one : {&kind.alone, &kind.alone_seen, &kind.area}) *one = *at++;
+    for (double* one : {&kind.alone, &kind.alone_seen, &kind.area, &kind.slipping, &kind.late_squares})
+      *one = *at++;
     t.kinds.push_back(kind);
   }
   return t;

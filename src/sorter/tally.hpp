@@ -33,6 +33,8 @@ struct Tally {
     double alone = 0.0;                           ///< particles with no other within the camera's gap
     double alone_seen = 0.0;                      ///< whose object is theirs alone
     double area = 0.0;                            ///< m2, of outlines from above
+    double slipping = 0.0;                        ///< particles that slip on the belt as they are seen
+    double late_squares = 0.0;  ///< s2, of how much later than it was seen to come each comes
   };
   std::vector<Kind> kinds;
   double length = 0.0;  ///< m, of belt

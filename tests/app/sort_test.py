@@ -64,6 +64,20 @@ class Sort(unittest.TestCase):
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertEqual(result_of(self.dir / "whole"), result_of(self.dir / "killed"))
 
+    def test_a_feeder_gives_the_same_bits_on_any_threads_and_after_kills(self):
+        feeder = ("--set", 'sorter.feed.presentation="feeder"', "--set", 'sorter.throughput="0.3 t/h"', "--set", "sorter.particles=60")
+        self.assertEqual(sort(self.dir / "whole", *feeder, "--threads", "1").returncode, 0)
+        chance = random.Random(2)
+        for n in range(KILLS):
+            run = subprocess.Popen([EJECTA, "sort", str(CASE), "--out", str(self.dir / "killed"), "-q", *feeder])
+            time.sleep(chance.uniform(0.05, 2.0))
+            run.send_signal(chance.choice([signal.SIGKILL, signal.SIGTERM]))
+            run.wait()
+        done = sort(self.dir / "killed", *feeder, "--threads", "2")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(result_of(self.dir / "whole"), result_of(self.dir / "killed"))
+        self.assertGreater(result_of(self.dir / "whole")["particles"], 30)
+
     def test_another_case_is_refused_without_force(self):
         self.assertEqual(sort(self.dir / "a").returncode, 0)
         other = sort(self.dir / "a", "--set", "sorter.seed=5")

@@ -176,7 +176,7 @@ TEST(Feed, FromAFileIsWhatTheFileSays) {
 TEST(FastFlight, WithoutAirIsTheFreeFlightAndWithItGoesUpEvenly) {
   const Case c = tutorial_sorter();
   const auto source = make_jet_source(c);
-  const JetField field(c, *source, AirCoefficients{}.widening);
+  const JetField field(c, *source);
   const FastFlight flight(c, field);
   const ParticleClass made(cubes(SizeLaw::one, 10e-3), "", 1);
   FeedParticle p;

@@ -95,7 +95,7 @@ Ejection over_open_valve(double pitch, double lead) {
                     end.clearance = 1.0;
                 return end;
               },
-          .reach = 0.5 * pitch};
+          .reach = [=](const FeedParticle&) { return pitch; }};
 }
 
 /// Particles as small as points, each shot at alone by one valve.
