@@ -19,7 +19,6 @@ constexpr int kBodyBlock = 512;   // bodies one thread moves at a time; sums are
 constexpr double kSlowest = 0.1;  // m/s, impact speed the step is made for at least
 constexpr double kMostPieces = 64.0;
 constexpr double kMostGiven = 0.25;
-constexpr double kMostWay = 0.1;       // of the thinnest thing, that two bodies near each other in a sub-step
 constexpr double kSeveralBalls = 2.0;  // contacts a ball has of which only the deepest is looked at
 
 void note_peak(ContactPeaks& p, double overlap, double force_squared, double dt) {
@@ -49,7 +48,7 @@ double Particles::stable_dt() const {
     fastest = std::max(fastest, speed);
     way.note(speed + bodies_[n].angular_velocity.norm() * bodies_[n].shape.bounding_radius());
   }
-  const double longest = kMostWay * thinnest_ / std::max(way.first + way.second, kSlowest);
+  const double longest = passing_time(thinnest_, std::max(way.first + way.second, kSlowest));
   if (contact_.time_step) return std::min(*contact_.time_step, longest);
   double time = 1.0;
   const Body* last = nullptr;

@@ -17,6 +17,10 @@ double rayleigh_time(double radius, double density, double youngs_modulus, doubl
 /// (whose force sets in with a kink). s.
 double contact_time(const Body& body, const Materials& materials, double velocity);
 
+/// In which things that near each other at `speed` (m/s) come a quarter of the thickness (m) of the thinner:
+/// in longer steps they might pass through each other unseen. s
+inline double passing_time(double thickness, double speed) { return 0.25 * thickness / speed; }
+
 /// How far a contact may come in a sub-step before that is divided: turn of its oscillation (rad; a step of
 /// stable_dt() has 0.16 in the impact it is made for, central differences are stable up to 2) and decay by
 /// its dashpot (velocities extrapolated to the whole step are stable up to 1).

@@ -20,10 +20,11 @@ constexpr double kLook = 1e-3;       ///< s, between two looks at who came, land
 constexpr double kStill = 2e-3;      ///< m/s: what moves less on the belt, for kStillFor, rests
 constexpr double kStillFor = 20e-3;  ///< s
 constexpr double kRideOver = 1.5;    ///< particles ride this many of the largest radius before the lip
-constexpr double kTrayThick = 2e-3;  ///< m
+constexpr double kTrayThick = 10e-3; ///< m
 /// Sub-steps are this part of the contact time of the size of which only so many are smaller. Longer than a
 /// run's tenth: an impact errs by 2 % of its energy, of which the belt takes nine tenths anyway.
 constexpr double kStepFraction = 0.25, kSmallest = 1e-3;
+constexpr double kFaster = 1.5;  ///< than any should be
 
 /// Loops of a scene run on the thread that computes it: scenes are computed side by side.
 class OneThread {
@@ -68,7 +69,7 @@ Feeder::Feeder(const Case& c, const std::vector<ParticleClass>& classes)
   const Materials materials(c);
   const double v = c.launch.belt_speed, u = c.feed.lip_speed, fall = fall_time(c),
                impact = std::hypot(v, c.environment.gravity.z() * fall);
-  double radius = 0.0, time = 1.0;
+  double radius = 0.0, time = 1.0, thinnest = kTrayThick;
   for (const ParticleClass& k : classes)
     for (const Prototype& p : k.prototypes()) {
       FeedParticle smallest;
@@ -77,10 +78,13 @@ Feeder::Feeder(const Case& c, const std::vector<ParticleClass>& classes)
       smallest.mass = k.mass_of(p, smallest.scale);
       time = std::min(time, contact_time(body_of(smallest, k), materials, impact));
       radius = std::max(radius, p.shape.bounding_radius() * k.size_at(1.0 - 1e-6) / p.size);
+      thinnest = std::min(thinnest, smallest.scale * p.shape.smallest_feature());
     }
   largest_ = radius;
   const bool asked = c.given.contains("contact.time_step_fraction");
   step_ = c.contact.time_step.value_or((asked ? c.contact.time_step_fraction : kStepFraction) * time);
+  // Fallen, two of them spun by the belt at its speed: by what dem would else divide the steps of all.
+  step_ = std::min(step_, passing_time(thinnest, 2.0 * kFaster * (impact + v)));
   // Whoever slides has of the belt's friction what the belt bears of it: the fall's momentum at once, then
   // its weight.
   const double a = materials.pair(0, 0).friction * std::abs(c.environment.gravity.z()),
