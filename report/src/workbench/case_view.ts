@@ -162,6 +162,7 @@ export class CaseView {
 
   async save(): Promise<boolean> {
     try {
+      await this.edits; // what was chosen in the form is in the text when its answer is here
       const text = this.text.value;
       this.digest = (await api.save(this.name, text, this.digest)).digest;
       this.saved = text;

@@ -23,7 +23,7 @@ export class JobListView {
     h("header", { class: "bar" }, h("h1", { id: "jobs-name" }, "Runs"),
       h("label", { for: "filter" }, "Show"), this.filter, h("label", { for: "at-once" }, "Side by side"), this.atOnce, ...this.together),
     this.note,
-    h("div", { class: "table", role: "region", "aria-labelledby": "jobs-name", tabindex: 0 }, h("table", {},
+    h("div", { class: "table", role: "region", "aria-label": "Table of runs", tabindex: 0 }, h("table", {},
       h("thead", {}, h("tr", {}, ...["Name", "State", "Progress", "Result", ""].map((name) => h("th", { scope: "col" }, name || h("span", { class: "unseen" }, "Actions"))))),
       this.body)));
   private readonly rows = new Map<string, { row: HTMLTableRowElement; shown: string }>();

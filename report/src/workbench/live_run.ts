@@ -120,12 +120,18 @@ class LiveHistory {
   private readonly time: number[] = [];
   private readonly values = new Map<string, number[]>();
   private grown: (() => void)[] | null = null;
+  private looks: Promise<void> = Promise.resolve();
 
   constructor(job: string, private readonly body: string) {
     this.file = new GrowingFile(fileOf(job, `history/body-${body}.csv`));
   }
 
-  async look(player: Player | null): Promise<void> {
+  /** One look after the other: each takes what the last one left. */
+  look(player: Player | null): Promise<void> {
+    return (this.looks = this.looks.then(() => this.take(player)));
+  }
+
+  private async take(player: Player | null): Promise<void> {
     const lines = await this.file.more();
     if (!lines) {
       this.columns = [];
