@@ -187,6 +187,7 @@ try {
   const clock = () => again.locator(".live .clock").textContent();
   const shown = await clock();
   await again.waitForFunction((then) => document.querySelector(".live .clock").textContent !== then, shown, { timeout: 60000 });
+  say(`slider ${await again.locator(".live input[type=range]").inputValue()}`);
   await picture(again, "live");
   await again.getByRole("button", { name: "All runs" }).click();
 

@@ -13,6 +13,7 @@ const START: Record<Kind, string> = { run: "Start", study: "Start study", map: "
 
 export class CaseView {
   readonly element: HTMLElement;
+  private readonly head: HTMLElement;
   private readonly form: Form;
   private readonly text = h("textarea", { id: "text", spellcheck: "false", autocomplete: "off", wrap: "off", "aria-label": "The case as text (TOML)" });
   private readonly lines = h("div", { class: "lines", "aria-hidden": "true" });
@@ -51,10 +52,12 @@ export class CaseView {
       this.shapeFile.value = "";
     });
     this.element = h("section", { class: "case", "aria-labelledby": "case-name" },
-      h("div", { class: "head" },
+      this.head = h("div", { class: "head" },
         h("header", { class: "bar" }, h("h1", { id: "case-name" }, name), this.status, this.shapeButton, this.shapeFile, this.copyButton, this.saveButton, this.starts), this.problems),
       h("div", { class: "sides" }, this.form.element,
         h("div", { class: "text-side" }, h("div", { class: "editor" }, this.lines, this.text), this.shapes.element, this.summary)));
+    // What stays in sight beside the form begins below the head, which grows with the faults.
+    new ResizeObserver(() => this.element.style.setProperty("--head", `${this.head.offsetHeight}px`)).observe(this.head);
     addEventListener("beforeunload", (event) => {
       if (this.element.isConnected && this.changed) event.preventDefault();
     });

@@ -21,7 +21,8 @@ export class JobListView {
   private readonly filter = h("input", { type: "search", id: "filter", placeholder: "part of a name", autocomplete: "off" });
   readonly element = h("section", { class: "jobs", "aria-labelledby": "jobs-name" },
     h("header", { class: "bar" }, h("h1", { id: "jobs-name" }, "Runs"),
-      h("label", { for: "filter" }, "Show"), this.filter, h("label", { for: "at-once" }, "Side by side"), this.atOnce, ...this.together),
+      h("span", { class: "pair" }, h("label", { for: "filter" }, "Show"), this.filter),
+      h("span", { class: "pair" }, h("label", { for: "at-once" }, "Side by side"), this.atOnce), ...this.together),
     this.note,
     h("div", { class: "table", role: "region", "aria-label": "Table of runs", tabindex: 0 }, h("table", {},
       h("thead", {}, h("tr", {}, ...["Name", "State", "Progress", "Result", ""].map((name) => h("th", { scope: "col" }, name || h("span", { class: "unseen" }, "Actions"))))),
