@@ -20,10 +20,10 @@ class Changes {
 
  private:
   struct Entry {
-    std::string text;  ///< "" of one that is gone
+    nlohmann::ordered_json value;  ///< null: it is gone
     std::int64_t version = 0;
   };
-  bool put(Entry& entry, std::string text);
+  bool put(Entry& entry, const nlohmann::ordered_json& value);
   std::map<std::string, Entry> jobs_, rest_;
   std::int64_t version_ = 0;
 };

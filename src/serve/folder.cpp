@@ -49,19 +49,17 @@ Folder::Content Folder::content() const {
     const std::string name = entry->path().lexically_relative(path_).string();
     const bool hidden = entry->path().filename().string().starts_with('.');
     if (entry->is_directory(failed)) {
-      const bool job = !hidden && !kind_of_directory(entry->path()).empty();
-      if (job) found.jobs.push_back(name);
-      if (job || hidden || entry.depth() >= kDeepest) entry.disable_recursion_pending();
+      const std::string kind = hidden ? "" : kind_of_directory(entry->path());
+      if (!kind.empty()) found.jobs[name] = kind;
+      if (!kind.empty() || hidden || entry.depth() >= kDeepest) entry.disable_recursion_pending();
     } else if (entry->path().extension() == ".toml" && !hidden) {
       found.cases.push_back(name);
     } else if (entry->path().extension() == ".log") {
       const std::string job = name.substr(0, name.size() - 4);
-      if (!kind_of_name(job).empty()) found.jobs.push_back(job);
+      if (!kind_of_name(job).empty()) found.jobs.try_emplace(job, kind_of_name(job));
     }
   }
   std::sort(found.cases.begin(), found.cases.end());
-  std::sort(found.jobs.begin(), found.jobs.end());
-  found.jobs.erase(std::unique(found.jobs.begin(), found.jobs.end()), found.jobs.end());
   return found;
 }
 

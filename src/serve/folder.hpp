@@ -1,5 +1,6 @@
 #pragma once
 #include <filesystem>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -16,10 +17,11 @@ class Folder {
   /// one that leads, or links, out of the folder.
   std::filesystem::path inside(const std::string& name) const;
 
-  /// Names of case files and of what has been started from them, each sorted.
   struct Content {
-    std::vector<std::string> cases;
-    std::vector<std::string> jobs;  ///< directories, and logs of what never came to have one
+    std::vector<std::string> cases;  ///< names of case files, sorted
+    /// What has been started from them, by name, and its kind_of_directory(): also logs of what never came to
+    /// have a directory, with kind_of_name().
+    std::map<std::string, std::string> jobs;
   };
   Content content() const;
 

@@ -41,12 +41,12 @@ std::uintmax_t size_of(const fs::path& file) {
   return missing ? 0 : size;
 }
 
-/// Changes when somebody goes on with a job: he writes there.
+/// Changes when somebody goes on with a job: he writes there. `kind`: of its directory.
 std::string stamp_of(const fs::path& directory, const std::string& kind) {
   std::string stamp = std::to_string(size_of(directory.string() + ".log"));
   std::vector<const char*> places{"result.json"};
   if (kind == "run") places.push_back("progress.json");
-  if (kind == "study" || kind == "map") places.insert(places.end(), {"running", "results", "failed"});
+  if (kind == "study") places.insert(places.end(), {"running", "results", "failed"});
   if (kind == "sort") places.push_back("state.json");
   for (const char* place : places) {
     std::error_code none;
@@ -71,9 +71,14 @@ bool JobList::has_begun(const Job& job) const {
 std::string JobList::kind_of(const std::string& name) {
   const fs::path directory = folder_.inside(name);
   const std::string kind = kind_of_directory(directory);
+  return kind.empty() ? kind_of_name(name) : kind_of(directory, kind);
+}
+
+/// A study may be a map.
+std::string JobList::kind_of(const fs::path& directory, const std::string& kind) {
   if (kind == "study")
     if (const Json& head = files_.read(directory / "study.json"); head.is_object()) return head["kind"];
-  return kind.empty() ? kind_of_name(name) : kind;
+  return kind;
 }
 
 std::string JobList::case_of(const std::string& name) {
@@ -92,28 +97,27 @@ std::string JobList::case_of(const std::string& name) {
   return stem + ".toml";
 }
 
-Json JobList::all() {
+Json JobList::all(const Folder::Content& content) {
   const std::lock_guard lock(one_at_a_time_);
   const Queue::State queue = queue_.read();
   Json list = Json::array();
-  std::map<std::string, Json> still_ended;
-  for (const std::string& name : folder_.content().jobs) {
+  std::map<std::string, Ended> still_ended;
+  for (const auto& [name, kind_there] : content.jobs) {
     if (find(queue.waiting, name)) continue;
-    const fs::path directory = folder_.inside(name);
-    Json now = nullptr;
+    const fs::path directory = folder_.path() / name;
     const bool active = find(queue.started, name) != nullptr;
-    const std::string kind = kind_of(name);
-    const std::string stamp = stamp_of(directory, kind);
-    if (const auto it = ended_.find(name); !active && it != ended_.end() && it->second["stamp"] == stamp)
-      now = std::move(it->second["state"]);
-    else {
-      now = listed(name, kind, case_of(name));
-      now.update(job_state(kind, directory, is_held(log_of(name)), files_));
+    std::string stamp = stamp_of(directory, kind_there);
+    if (const auto it = ended_.find(name); !active && it != ended_.end() && it->second.stamp == stamp) {
+      list.push_back(it->second.state);
+      still_ended.insert(ended_.extract(it));
+      continue;
     }
+    const std::string kind = kind_of(directory, kind_there);
+    Json now = listed(name, kind, case_of(name));
+    now.update(job_state(kind, directory, is_held(directory.string() + ".log"), files_));
     list.push_back(now);
-    const std::string word = now["state"];
-    if (!active && word != "running" && word != "starting")
-      still_ended[name] = {{"stamp", stamp}, {"state", std::move(now)}};
+    if (const std::string word = now["state"]; !active && word != "running" && word != "starting")
+      still_ended[name] = {std::move(stamp), std::move(now)};
   }
   for (std::size_t n = 0; n < queue.waiting.size(); ++n) {
     const Job& job = queue.waiting[n];
@@ -121,9 +125,10 @@ Json JobList::all() {
     list.back().update(Json{{"state", "waiting"}, {"before", n}, {"report", false}});
   }
   ended_ = std::move(still_ended);
-  std::sort(list.begin(), list.end(), [](const Json& a, const Json& b) {
-    return a["name"].get_ref<const std::string&>() < b["name"].get_ref<const std::string&>();
-  });
+  if (!queue.waiting.empty())
+    std::sort(list.begin(), list.end(), [](const Json& a, const Json& b) {
+      return a["name"].get_ref<const std::string&>() < b["name"].get_ref<const std::string&>();
+    });
   return list;
 }
 

@@ -19,9 +19,9 @@ class JobList {
   JobList(const Folder& folder, std::filesystem::path program)
       : folder_(folder), queue_(folder.path()), processes_(std::move(program)) {}
 
-  /// One object a job: name, kind, case, state ("waiting", "starting", "running", "done", "stopped",
-  /// "diverged", "failed"), and what job_state() knows of it.
-  nlohmann::ordered_json all();
+  /// One object a job, sorted by name: name, kind, case, state ("waiting", "starting", "running", "done",
+  /// "stopped", "diverged", "failed"), and what job_state() knows of it.
+  nlohmann::ordered_json all(const Folder::Content& content);
   /// {"at_once": of the jobs that wait, so many are started side by side}
   nlohmann::ordered_json settings();
   void set_at_once(int count);
@@ -42,6 +42,7 @@ class JobList {
   bool goes_on(const std::string& name);
   bool has_begun(const Job& job) const;
   std::string kind_of(const std::string& name);
+  std::string kind_of(const std::filesystem::path& directory, const std::string& kind);
   std::string case_of(const std::string& name);
   void launch(const Job& job, int side_by_side);
 
@@ -50,7 +51,11 @@ class JobList {
   Queue queue_;
   Processes processes_;
   JobFiles files_;
-  std::map<std::string, nlohmann::ordered_json> ended_;  // that need no second look until their files change
+  struct Ended {  // needs no second look until its files change
+    std::string stamp;
+    nlohmann::ordered_json state;
+  };
+  std::map<std::string, Ended> ended_;
 };
 
 }  // namespace ejecta

@@ -37,7 +37,7 @@ constexpr int kThreads = 48;  ///< connections that are served at once
 constexpr int kStreams = 32;  ///< of them with live events, each of which holds a thread
 constexpr std::size_t kLargestText = 1 << 20, kLargestUpload = 64 << 20;
 constexpr std::size_t kMostCompared = 50;
-constexpr auto kBetweenLooks = std::chrono::milliseconds(500);
+constexpr auto kBetweenLooks = std::chrono::seconds(1);  ///< so often a run says how far it is
 constexpr auto kSignOfLife = std::chrono::seconds(5);
 
 void answer(Response& response, const Json& json) {
@@ -307,7 +307,8 @@ struct Workbench::Parts {
   }
 
   void add_jobs() {
-    server.Get("/api/jobs", [this](const Request&, Response& response) { answer(response, jobs.all()); });
+    server.Get("/api/jobs",
+               [this](const Request&, Response& response) { answer(response, jobs.all(folder.content())); });
     server.Get("/api/study", [this](const Request& request, Response& response) {
       answer(response, study_result(TaskStore::open(folder.inside(request.get_param_value("name")))));
     });
@@ -383,10 +384,11 @@ struct Workbench::Parts {
       try {
         jobs.advance();
         if (streams > 0) {
-          now = jobs.all();
+          const Folder::Content content = folder.content();
+          now = jobs.all(content);
           rest = jobs.settings();
           rest["trouble"] = "";
-          rest["cases"] = folder.content().cases;
+          rest["cases"] = content.cases;
         }
       } catch (const std::exception& e) {  // the folder cannot be read just now, or its queue
         rest = {{"trouble", e.what()}};
