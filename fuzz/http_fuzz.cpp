@@ -10,6 +10,7 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <memory>
 #include <sstream>
 #include <string>
 
@@ -112,7 +113,7 @@ class Target {
   }
 
   /// Its answer, or what came of it in a moment.
-  std::string send(const std::string& bytes) const {
+  std::string send(const std::string& bytes) {
     const int connection = ::socket(AF_INET, SOCK_STREAM, 0);
     sockaddr_in to{};
     to.sin_family = AF_INET;
@@ -121,6 +122,10 @@ class Target {
     const timeval moment{0, 300000};
     ::setsockopt(connection, SOL_SOCKET, SO_RCVTIMEO, &moment, sizeof moment);
     ::setsockopt(connection, SOL_SOCKET, SO_SNDTIMEO, &moment, sizeof moment);
+    sockaddr_in from{};  // another each time: a port that was used rests for a minute
+    from.sin_family = AF_INET;
+    from.sin_addr.s_addr = htonl(INADDR_LOOPBACK + ++connections_ % 60000);
+    ::bind(connection, reinterpret_cast<const sockaddr*>(&from), sizeof from);
     if (::connect(connection, reinterpret_cast<const sockaddr*>(&to), sizeof to) != 0) {
       ::close(connection);
       return "";
@@ -144,6 +149,7 @@ class Target {
   std::unique_ptr<Workbench> workbench_;
   std::string port_, token_;
   std::uint64_t looks_ = 0;
+  std::uint32_t connections_ = 0;
 };
 
 }  // namespace
