@@ -108,8 +108,11 @@ Json judge_case(const std::string& text, const std::string& path, double bandwid
   std::vector<Problem> problems, warnings, told_already;
   std::optional<Scene> scene;
   try {
-    const Case c = examine_case(text, path, {}, problems, &warnings,
-                                [&](const Case& of) { return check_bodies(of, &scene); });
+    const FurtherChecks further = [&](const Case& of) {
+      return of.campaign.enabled ? std::vector<Problem>{}
+                                 : check_bodies(of, &scene);  // only its parts have any
+    };
+    const Case c = examine_case(text, path, {}, problems, &warnings, further);
     tell(problems);
     answer["commands"] = commands_for(c);
     answer["values"] = values_of(c, parse_toml(std::make_shared<Source>(Source{path, text}), told_already));

@@ -40,6 +40,12 @@ quantities = ["/bodies/0/peak_speed_m_s"]
 key = "run.end_time"
 values = ["5 ms", "10 ms", "15 ms", "20 ms"]
 `);
+for (const name of ["sorter/tutorial.toml", "paper/setup"]) cpSync(path.join(source, "cases", name), path.join(scratch, name), { recursive: true });
+writeFileSync(path.join(scratch, "both.toml"), `[campaign]
+[[campaign.part]]
+kind = "study"
+case = "sizes.toml"
+`);
 
 /** A box as an STL file, in a unit that only its owner knows. */
 function rock([x, y, z]) {
@@ -88,7 +94,7 @@ async function picture(page, name) {
 async function openCase(page, name) {
   await page.getByRole("button", { name, exact: true }).click();
   await page.locator("#case-name").getByText(name, { exact: true }).waitFor();
-  await page.waitForSelector(".field.given");
+  await page.waitForSelector(".field.given", { state: "attached" });
 }
 const toRuns = (page) => page.getByRole("button", { name: "Runs", exact: true }).click();
 
@@ -239,6 +245,18 @@ try {
   await again.waitForSelector("section.job.done", { timeout: 60000 });
   await again.waitForSelector(".job-content .u-wrap");
   await picture(again, "study");
+
+  // A sorter, and a campaign.
+  await openCase(again, "sorter/tutorial.toml");
+  await again.getByRole("button", { name: "Start sorter" }).click();
+  await again.waitForSelector("section.job.done", { timeout: 60000 });
+  await again.waitForSelector(".sort-view canvas");
+  await picture(again, "sorter");
+  await openCase(again, "both.toml");
+  await again.getByRole("button", { name: "Start campaign" }).click();
+  await again.waitForSelector("section.job.done", { timeout: 60000 });
+  await again.waitForSelector(".job-content tbody tr");
+  await picture(again, "campaign");
 
   for (const [width, scheme] of [[1440, "light"], [1440, "dark"], [800, "light"], [800, "dark"], [390, "light"], [390, "dark"]]) {
     const small = await open({ width, height: 900 }, scheme);

@@ -285,7 +285,8 @@ class Cases(ServerCase):
             self.assertEqual(self.server.post("/api/copy", name="ball.toml", copy=name)[0], 400)
 
     def test_what_a_case_is_for(self):
-        for text, commands in ((BALL, ["run"]), (STUDY, ["run", "study"]), ((source / "cases" / "sorter" / "tutorial.toml").read_text(), ["sort"])):
+        for text, commands in ((BALL, ["run"]), (STUDY, ["run", "study"]), ((source / "cases" / "sorter" / "tutorial.toml").read_text(), ["sort"]),
+                               ("[campaign]\n[[campaign.part]]\ncase = \"ball.toml\"\n", ["campaign"])):
             self.assertEqual(self.server.post("/api/check", name="ball.toml", text=text)[1]["commands"], commands)
 
 

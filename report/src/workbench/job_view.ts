@@ -1,5 +1,6 @@
 /** One run, study, map, sorter or campaign, as far as it is. */
 
+import { paintSwatches } from "../colour";
 import { h } from "../dom";
 import { unbroken } from "../format";
 import type { MapResult } from "../map_data";
@@ -56,7 +57,7 @@ export class JobView {
     this.buttons.replaceChildren(...this.actions.of(job));
     if (focused) [...this.buttons.querySelectorAll<HTMLElement>("button, a")].find((b) => b.getAttribute("aria-label") === focused)?.focus();
     this.look ??= this.lookAt(job);
-    this.look(job).catch((error: Error) => (this.note.textContent = error.message));
+    this.look(job).then(paintSwatches).catch((error: Error) => (this.note.textContent = error.message));
   }
 
   private lookAt(job: Job): Look {

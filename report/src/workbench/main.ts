@@ -1,5 +1,6 @@
 import "../style.css";
 import "./workbench.css";
+import { paintSwatches } from "../colour";
 import { h } from "../dom";
 import { api, watchFolder, type FolderState } from "./api";
 import { CaseView } from "./case_view";
@@ -8,7 +9,11 @@ import { JobView } from "./job_view";
 
 function followTheme(): void {
   const dark = matchMedia("(prefers-color-scheme: dark)");
-  const follow = (): void => void (document.documentElement.dataset["theme"] = dark.matches ? "dark" : "light");
+  const follow = (): void => {
+    document.documentElement.dataset["theme"] = dark.matches ? "dark" : "light";
+    paintSwatches();
+    document.dispatchEvent(new Event("themechange"));
+  };
   dark.addEventListener("change", follow);
   follow();
 }
