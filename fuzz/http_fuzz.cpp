@@ -4,6 +4,7 @@
 #include <sys/time.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
@@ -81,8 +82,9 @@ class Target {
   void look(const std::string& answer) {
     if (answer.find(kSecret) != std::string::npos) fail("it gave away what lies outside");
     if (++looks_ % 64 != 0) return;
-    for (int tries = 0; ask("G/api/cases").find(" 200 ") == std::string::npos; ++tries)
-      if (tries == 100) fail("it does not answer any more");
+    std::string alive;
+    for (int tries = 0; (alive = ask("G/api/cases")).find(" 200 ") == std::string::npos; ++tries)
+      if (tries == 100) fail("it does not serve any more: " + alive + ", " + std::strerror(errno));
     for (const auto& entry : fs::directory_iterator(outside_))
       if (entry.path() != folder() && entry.path().filename() != "secret.toml")
         fail("it wrote " + entry.path().string());

@@ -9,8 +9,9 @@
 #include "base/error.hpp"
 #include "base/parallel.hpp"
 #include "base/sha256.hpp"
+#include "case/load.hpp"
 #include "output/output_file.hpp"
-#include "study/task_store.hpp"
+#include "study/study.hpp"
 
 namespace ejecta {
 namespace {
@@ -24,6 +25,15 @@ constexpr int kMostAtOnce = 64;
 std::string job_name(const std::string& case_name, const std::string& kind, int number) {
   const std::string stem = fs::path(case_name).replace_extension().string();
   return number == 1 ? stem + "." + kind : fmt::format("{}-{}.{}", stem, number, kind);
+}
+
+/// Of a case with all that it extends and reads. One that cannot be read as a case is known by its text.
+std::string digest_of_case(const fs::path& file) {
+  try {
+    return study_header("", load_case(file.string())).at("input_sha256");
+  } catch (const Error&) {
+    return sha256_hex(output::read_file(file));
+  }
 }
 
 Json listed(const std::string& name, const std::string& kind, const std::string& case_name) {
@@ -149,7 +159,7 @@ std::string JobList::start(const std::string& case_name, const std::string& kind
     throw InputError(fmt::format("\"{}\" cannot be started", kind));
   const fs::path file = folder_.inside(case_name);
   if (!fs::is_regular_file(file)) throw InputError(fmt::format("there is no case {}", case_name));
-  Job job{.kind = kind, .case_name = case_name, .digest = sha256_hex(output::read_file(file))};
+  Job job{.kind = kind, .case_name = case_name, .digest = digest_of_case(file)};
   {
     const std::lock_guard lock(one_at_a_time_);
     queue_.change([&](Queue::State& q, const Queue::Keep&) {
@@ -222,9 +232,9 @@ void JobList::launch(const Job& job, int side_by_side) {
                                 std::max(1, core_count() / side_by_side)));
   const fs::path log = log_of(job.name);
   try {
-    if (!job.digest.empty() && sha256_hex(output::read_file(folder_.inside(job.case_name))) != job.digest)
-      throw InputError(
-          fmt::format("{} was changed while {} waited: start it again", job.case_name, job.name));
+    if (!job.digest.empty() && digest_of_case(folder_.inside(job.case_name)) != job.digest)
+      throw InputError(fmt::format("{}, or what it reads, was changed while {} waited: start it again",
+                                   job.case_name, job.name));
     processes_.start(words, folder_.path(), log);
   } catch (const std::exception& e) {  // said where a run says what it has met
     std::ofstream(log, std::ios::app) << "error: " << e.what() << "\n";

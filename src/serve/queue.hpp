@@ -12,7 +12,7 @@ struct Job {
   std::string name;       ///< of its directory in the folder, "flat-2.run"
   std::string kind;       ///< the command: "run", "study", "map", "sort", "campaign"
   std::string case_name;  ///< in the folder
-  std::string digest;     ///< of the case as it was when the job was asked for; "": of one that goes on
+  std::string digest;     ///< of the case, and what it reads, when it was asked for; "": of one that goes on
   bool resumes = false;
   std::uintmax_t said = 0;  ///< bytes of its log before it
 };

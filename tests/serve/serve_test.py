@@ -499,13 +499,24 @@ class Queue(ServerCase):
         self.stop("b.run", "a.run")
 
     def test_a_case_that_was_changed_while_it_waited(self):
+        (self.folder / "base.toml").write_text(BALL)
+        for name in ("changed", "same"):
+            (self.folder / f"{name}.toml").write_text('extends = "base.toml"\n')
         self.server.start("a.toml")
-        self.server.start("ball.toml")
+        for name in ("ball", "changed", "same"):
+            self.server.start(f"{name}.toml")
         (self.folder / "ball.toml").write_text(BALL.replace("10 mm", "11 mm"))
+        (self.folder / "same.toml").write_text('extends = "base.toml"   # a word more\n')
         self.stop("a.run")
         run = self.server.wait("ball.run", ("failed", "done"))
         self.assertEqual(run["state"], "failed")
         self.assertIn("was changed while ball.run waited", run["said"])
+        self.assertEqual(self.server.wait("same.run", ("failed", "done"))["state"], "done")
+        self.server.start("a.toml")
+        self.server.start("changed.toml")
+        (self.folder / "base.toml").write_text(BALL.replace("10 mm", "11 mm"))
+        self.stop("a-2.run")
+        self.assertEqual(self.server.wait("changed-2.run", ("failed", "done"))["state"], "failed", "what it extends was changed")
 
     def test_a_damaged_queue_is_said_to_be_damaged(self):
         (self.folder / ".ejecta").mkdir()
