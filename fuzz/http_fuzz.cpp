@@ -84,7 +84,7 @@ class Target {
     if (++looks_ % 64 != 0) return;
     std::string alive;
     for (int tries = 0; (alive = ask("G/api/cases")).find(" 200 ") == std::string::npos; ++tries)
-      if (tries == 100) fail("it does not serve any more: " + alive + ", " + std::strerror(errno));
+      if (tries == 100) fail("it does not serve any more: " + alive + trouble_);
     for (const auto& entry : fs::directory_iterator(outside_))
       if (entry.path() != folder() && entry.path().filename() != "secret.toml")
         fail("it wrote " + entry.path().string());
@@ -128,7 +128,9 @@ class Target {
     from.sin_family = AF_INET;
     from.sin_addr.s_addr = htonl(INADDR_LOOPBACK + ++connections_ % 60000);
     ::bind(connection, reinterpret_cast<const sockaddr*>(&from), sizeof from);
+    trouble_.clear();
     if (::connect(connection, reinterpret_cast<const sockaddr*>(&to), sizeof to) != 0) {
+      trouble_ = std::string("no connection: ") + std::strerror(errno);
       ::close(connection);
       return "";
     }
@@ -141,8 +143,11 @@ class Target {
     ::shutdown(connection, SHUT_WR);
     std::string answer;
     char piece[16384];
-    for (ssize_t n = 0; answer.size() < (1U << 18) && (n = ::recv(connection, piece, sizeof piece, 0)) > 0;)
-      answer.append(piece, static_cast<std::size_t>(n));
+    ssize_t got = 0;
+    while (answer.size() < (1U << 18) && (got = ::recv(connection, piece, sizeof piece, 0)) > 0)
+      answer.append(piece, static_cast<std::size_t>(got));
+    if (answer.empty())
+      trouble_ = got == 0 ? "it hangs up" : std::string("no answer: ") + std::strerror(errno);
     ::close(connection);
     return answer;
   }
@@ -150,6 +155,7 @@ class Target {
   fs::path outside_;
   std::unique_ptr<Workbench> workbench_;
   std::string port_, token_;
+  std::string trouble_;  ///< of the last request, where it had no answer
   std::uint64_t looks_ = 0;
   std::uint32_t connections_ = 0;
 };
