@@ -76,7 +76,7 @@ class Target {
       return send("POST " + rest.substr(0, line) + head() + "Content-Length: " + std::to_string(body.size()) +
                   "\r\n\r\n" + body);
     }
-    return send(replaced(replaced(rest, "TOKEN", token_), "PORT", port_));
+    return send(replaced(replaced(rest, "TOKEN", token_), "PORT", port_), true);
   }
 
   void look(const std::string& answer) {
@@ -114,8 +114,8 @@ class Target {
     return text;
   }
 
-  /// Its answer, or what came of it in a moment.
-  std::string send(const std::string& bytes) {
+  /// Its answer, or what came of it in a moment. `cut`: nothing more will come.
+  std::string send(const std::string& bytes, bool cut = false) {
     const int connection = ::socket(AF_INET, SOCK_STREAM, 0);
     sockaddr_in to{};
     to.sin_family = AF_INET;
@@ -140,7 +140,7 @@ class Target {
       if (n <= 0) break;
       sent += static_cast<std::size_t>(n);
     }
-    ::shutdown(connection, SHUT_WR);
+    if (cut) ::shutdown(connection, SHUT_WR);  // httplib says nothing to who has hung up half way
     std::string answer;
     char piece[16384];
     ssize_t got = 0;
