@@ -1,5 +1,6 @@
 # Copies report/ into the build folder and builds the page there, so that the source tree stays clean.
 # A failure gives an empty page, not a failed build: the program works without it.
+file(REMOVE_RECURSE ${BUILD}/src)  # what is gone there goes here
 file(COPY ${SOURCE}/ DESTINATION ${BUILD} PATTERN node_modules EXCLUDE PATTERN dist EXCLUDE)
 file(REMOVE_RECURSE ${BUILD}/dist)
 file(SHA256 ${BUILD}/package-lock.json lock)

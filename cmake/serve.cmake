@@ -6,7 +6,7 @@ if(NOT HTTPLIB OR NOT HTTPLIB_INCLUDE)
   return()
 endif()
 
-ejecta_room(serve USES base case output simulation LIBS ${HTTPLIB} nlohmann_json::nlohmann_json)
+ejecta_room(serve USES base case shape study output simulation LIBS ${HTTPLIB} nlohmann_json::nlohmann_json)
 # As Debian's library was built: objects have other members without.
 target_compile_definitions(ejecta_serve PUBLIC CPPHTTPLIB_OPENSSL_SUPPORT CPPHTTPLIB_ZLIB_SUPPORT CPPHTTPLIB_BROTLI_SUPPORT)
 set_source_files_properties(${PROJECT_SOURCE_DIR}/src/serve/page.cpp PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON

@@ -28,7 +28,9 @@ except ImportError as _missing:
 else:
     from . import keys
     from .case import Case, shape
-    from .running import Check, Job, Margin, Result, Study, check, jet, map, run, study, submit
+    from .running import (
+        Campaign, Check, Job, Margin, Result, Share, Sorting, Study, campaign, check, jet, map, run, sort, study, submit,
+    )
 
     __version__ = _core.version
     Shape, Progress, explain = _core.Shape, _core.Progress, _core.explain

@@ -164,9 +164,10 @@ def program():
     raise FileNotFoundError(f"no program ejecta above {library}")
 
 
-def _file_and_changes(case, directory):
-    """The case as words of the command line; one that is not (or no more) a file is saved beside its directory."""
-    if case._file and None not in case._changes.values():
+def _file_and_changes(case, directory, kind="run"):
+    """The case as words of the command line; one that is not (or no more) a file, or that a command which knows no --set
+    is to take, is saved beside its directory."""
+    if case._file and None not in case._changes.values() and (kind != "campaign" or not case._changes):
         return [case._file, *_sets(case)]
     file = directory.parent / f"{directory.name}.toml"
     case.save(file)
@@ -278,34 +279,134 @@ class Study:
         return self.result[name]
 
 
-def _study(kind, case, out, at_once, overwrite):
+def _carry_out(kind, case, out, options, overwrite):
+    """A command of the program on a case, to its end: its directory. ^C stops it; the same call goes on."""
     case = as_case(case)
     directory = Path(out if out is not None else f"{Path(case.name).stem}.{kind}")
-    words = [program(), kind, *_file_and_changes(case, directory), "--out", str(directory), "-q"]
-    words += ["--force"] * overwrite + [f"--at-once={at_once}"] * (at_once > 0)
+    words = [program(), kind, *_file_and_changes(case, directory, kind), "--out", str(directory), "-q"]
+    words += ["--force"] * overwrite + [f"--{name}={value}" for name, value in options.items() if value > 0]
     process = subprocess.Popen(words, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE,
                                text=True, start_new_session=True)
     try:
         said = process.communicate()[1]
-    except KeyboardInterrupt:  # its runs leave checkpoints; the same call goes on
+    except KeyboardInterrupt:  # what is done stays
         process.terminate()
         process.wait()
         raise
     if process.returncode != 0:
         raise _error_of(process.returncode, said)
-    return Study(directory)
+    return directory
 
 
 def study(case: CaseLike, *, out: str | os.PathLike[str] | None = None, at_once: int = 0, overwrite: bool = False) -> Study:
     """Runs a case many times, as its [study] says, in processes of their own. One that was stopped by ^C goes on when it
     is called again."""
-    return _study("study", case, out, at_once, overwrite)
+    return Study(_carry_out("study", case, out, {"at-once": at_once}, overwrite))
 
 
 def map(case: CaseLike, *, out: str | os.PathLike[str] | None = None, at_once: int = 0,  # noqa: A001 (the name that the command has)
         overwrite: bool = False) -> Study:
     """Finds the places around the jet from which a particle is ejected, as [map] says."""
-    return _study("map", case, out, at_once, overwrite)
+    return Study(_carry_out("map", case, out, {"at-once": at_once}, overwrite))
+
+
+class Share(float):
+    """A share of particles or of mass with the ends of its interval of 95 %: `low`, `high`."""
+
+    low: float
+    high: float
+
+    def __new__(cls, value, low, high):
+        share = super().__new__(cls, value)
+        share.low, share.high = low, high
+        return share
+
+    def __repr__(self):
+        return f"{float(self):.4g} ({self.low:.4g} to {self.high:.4g})"
+
+
+class Sorting:
+    """What became of a feed. `result` is its result.json (docs/files.md).
+
+        sorting.recovery, sorting.purity, sorting.loss   # by mass; .low and .high: 95 %
+        sorting.share("recovery")                        # by number
+        sorting.fates                                    # what became of which class and why, a list of dicts
+    """
+
+    def __init__(self, directory):
+        self.directory = Path(directory)
+        self.result = json.loads((self.directory / "result.json").read_text())
+
+    def share(self, name: str) -> Share:
+        """A share of the result by its name; NaN where there is nothing to share."""
+        numbers = (self.result[name], self.result[f"{name}_low"], self.result[f"{name}_high"])
+        return Share(*(math.nan if number is None else number for number in numbers))
+
+    @property
+    def recovery(self) -> Share:
+        """Of what is to be ejected, the mass that is."""
+        return self.share("recovery_mass")
+
+    @property
+    def purity(self) -> Share:
+        """Of the ejected product, the mass that belongs there."""
+        return self.share("purity_mass")
+
+    @property
+    def loss(self) -> Share:
+        """Of what is to be kept, the mass that is ejected."""
+        return self.share("loss_mass")
+
+    @property
+    def fates(self) -> list[dict[str, Any]]:
+        return self.result["fates"]
+
+    def to_pandas(self):
+        """fates.csv as a DataFrame."""
+        import pandas
+
+        return pandas.read_csv(self.directory / "fates.csv")
+
+    def __getitem__(self, name):
+        return self.result[name]
+
+    def __repr__(self):
+        return f"<ejecta.Sorting {self.result['summary']}>"
+
+
+def sort(case: CaseLike, *, out: str | os.PathLike[str] | None = None, resolved: int = 0, threads: int = 0,
+         overwrite: bool = False) -> Sorting:
+    """Computes a whole sorter, from the feed to its two products, as [sorter] says; `resolved`: computes so many of its
+    shots as runs, and corrects the result with them. One that was stopped by ^C goes on when it is called again."""
+    return Sorting(_carry_out("sort", case, out, {"resolved": resolved, "threads": threads}, overwrite))
+
+
+class Campaign:
+    """A programme of runs, jets, maps and studies: `parts` is a list of dicts (docs/files.md)."""
+
+    def __init__(self, directory):
+        self.directory = Path(directory)
+        self.result = json.loads((self.directory / "result.json").read_text())
+
+    @property
+    def parts(self) -> list[dict[str, Any]]:
+        return self.result["parts"]
+
+    def part(self, number: int) -> Run | Study:
+        """What a part has left: the files of a run or jet, or the study or map."""
+        part = self.parts[number]
+        directory = self.directory / part["directory"]
+        return Study(directory) if part["kind"] in ("study", "map") else Run(directory)
+
+    def __repr__(self):
+        done = sum(part["done"] for part in self.parts)
+        return f"<ejecta.Campaign {self.result['title']}: {done} of {len(self.parts)} parts done>"
+
+
+def campaign(case: CaseLike, *, out: str | os.PathLike[str] | None = None, overwrite: bool = False) -> Campaign:
+    """Carries out a programme of runs, jets, maps and studies, as [campaign] says. Parts that are done stay: one that was
+    stopped by ^C goes on when it is called again."""
+    return Campaign(_carry_out("campaign", case, out, {}, overwrite))
 
 
 class Margin:

@@ -71,11 +71,22 @@ export function inReadableUnit(series: Series[], unit: string): { series: Series
 }
 
 export function chart(spec: ChartSpec, height = 210): HTMLElement {
-  const holder = h("div", { class: "chart", role: "img", "aria-label": `${spec.title}, ${spec.yLabel} over ${spec.xLabel}. ${summary(spec)}.` });
+  return growingChart(spec, height).figure;
+}
+
+/** A chart whose values come while it is looked at: `grown` says that those of its spec are others now. */
+export function growingChart(spec: ChartSpec, height = 210): { figure: HTMLElement; grown: () => void } {
+  const holder = h("div", { class: "chart", role: "img" });
   const figure = h("figure", { class: "chart-figure" }, h("figcaption", {}, spec.title), holder);
-  let largest = 0;
-  for (const s of spec.series) for (let n = 0; n < s.values.length; ++n) largest = Math.max(largest, Math.abs(s.values[n]!) || 0);
-  const text = alike(largest);
+  const data = (): uPlot.AlignedData => [spec.x, ...spec.series.map((s) => s.values)] as unknown as uPlot.AlignedData;
+  let text = alike(0);
+  const describe = (): void => {
+    let largest = 0;
+    for (const s of spec.series) for (let n = 0; n < s.values.length; ++n) largest = Math.max(largest, Math.abs(s.values[n]!) || 0);
+    text = alike(largest);
+    holder.setAttribute("aria-label", `${spec.title}, ${spec.yLabel} over ${spec.xLabel}. ${summary(spec)}.`);
+  };
+  describe();
   let plot: uPlot | undefined;
   const marker = h("div", { class: "now-line", "aria-hidden": "true" });
 
@@ -120,7 +131,7 @@ export function chart(spec: ChartSpec, height = 210): HTMLElement {
           value: (_u, v) => (v == null ? "" : text(v)),
         })),
       ],
-    }, [spec.x, ...spec.series.map((s) => s.values)] as unknown as uPlot.AlignedData, holder);
+    }, data(), holder);
     if (spec.part) plot.setScale("x", { min: spec.part[0], max: spec.part[1] });
     if (spec.player) {
       plot.over.append(marker);
@@ -137,7 +148,11 @@ export function chart(spec: ChartSpec, height = 210): HTMLElement {
   }).observe(holder);
   document.addEventListener("themechange", build);
   spec.player?.onChange(moveMarker);
-  return figure;
+  const grown = (): void => {
+    describe();
+    plot?.setData(data());
+  };
+  return { figure, grown };
 }
 
 export function axisLabel(name: string, unit: string): string {

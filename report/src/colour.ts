@@ -56,3 +56,9 @@ export function componentColour(component: number, dark: boolean): string {
 export function isDark(): boolean {
   return document.documentElement.dataset["theme"] === "dark";
 }
+
+/** Gives the swatches of bodies their colours, after they are made and when the theme changes. */
+export function paintSwatches(): void {
+  for (const swatch of document.querySelectorAll<HTMLElement>("[data-body]"))
+    swatch.style.setProperty("--colour", bodyColour(Number(swatch.dataset["body"]), isDark()));
+}

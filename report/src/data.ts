@@ -120,12 +120,12 @@ async function inflate(bytes: Uint8Array): Promise<Uint8Array> {
 
 // The shapes below are those of docs/files.md, before decoding.
 
-interface RawHeader extends Omit<Replay, "bodies" | "valveOpen" | "frames"> {
+export interface RawHeader extends Omit<Replay, "bodies" | "valveOpen" | "frames"> {
   bodies: { name: string; vertices: string; triangles: string }[];
   valve_open: [number, number][];
 }
 
-interface RawFrame {
+export interface RawFrame {
   time: number;
   bodies: (number[] | null)[];
   slices: { raster: number; full_scale: number; data: string }[];
@@ -138,7 +138,8 @@ interface RawRun extends Omit<Run, "caseText" | "history" | "replay" | "figures"
   replay: [] | [RawHeader, ...RawFrame[]];
 }
 
-async function readFrame(line: RawFrame): Promise<Frame> {
+/** A line of replay.jsonl but the first. */
+export async function readFrame(line: RawFrame): Promise<Frame> {
   const slices = new Map<number, SliceFrame>();
   for (const s of line.slices)
     slices.set(s.raster, { fullScale: s.full_scale, pixels: await inflate(bytesOf(s.data)) });
@@ -148,9 +149,8 @@ async function readFrame(line: RawFrame): Promise<Frame> {
   return { time: line.time, poses, slices };
 }
 
-async function readReplay(lines: RawRun["replay"]): Promise<Replay | null> {
-  const [h, ...frames] = lines;
-  if (!h || frames.length === 0) return null;
+/** The first line of replay.jsonl; frames come later. */
+export function readHeader(h: RawHeader): Replay {
   return {
     domain: h.domain,
     rasters: h.rasters,
@@ -163,8 +163,14 @@ async function readReplay(lines: RawRun["replay"]): Promise<Replay | null> {
     nozzles: h.nozzles,
     undisturbed: h.undisturbed,
     valveOpen: h.valve_open,
-    frames: await Promise.all(frames.map(readFrame)),
+    frames: [],
   };
+}
+
+async function readReplay(lines: RawRun["replay"]): Promise<Replay | null> {
+  const [h, ...frames] = lines;
+  if (!h || frames.length === 0) return null;
+  return { ...readHeader(h), frames: await Promise.all(frames.map(readFrame)) };
 }
 
 function readTable(t: RawRun["history"][string]): Table {

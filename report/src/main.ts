@@ -1,5 +1,5 @@
 import "./style.css";
-import { bodyColour, isDark } from "./colour";
+import { paintSwatches } from "./colour";
 import { campaignPage, readCampaign } from "./campaign_page";
 import { readRuns, type JsonObject, type Run } from "./data";
 import { h, section } from "./dom";
@@ -36,11 +36,6 @@ function followTheme(): void {
   });
   addEventListener("afterprint", follow);
   follow();
-}
-
-function paintSwatches(): void {
-  for (const swatch of document.querySelectorAll<HTMLElement>("[data-body]"))
-    swatch.style.setProperty("--colour", bodyColour(Number(swatch.dataset["body"]), isDark()));
 }
 
 /** From the first to the last moment of any run; starts where the air pushes hardest on a body, or blows fastest, or

@@ -34,7 +34,7 @@ export function mapView(map: MapResult): HTMLElement {
       `${polygon.map((p, n) => `${n ? "L" : "M"}${X(p[0]).toFixed(1)} ${Y(p[1]).toFixed(1)}`).join("")}Z`).join("");
 
     const root = svg("svg", {
-      width, height, viewBox: `0 0 ${width} ${height}`, role: "img",
+      width, height, viewBox: `0 0 ${width} ${height}`, role: "group",
       "aria-label": `Map seen from above, x along the belt to the right, y across it, in millimetres. ${map.summary}`,
     });
     for (const x of ticks(wx0 * 1e3, wx1 * 1e3, Math.max(4, plotWidth / 80)))

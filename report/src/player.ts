@@ -8,8 +8,8 @@ export class Player {
   private lastTick = 0;
 
   constructor(
-    readonly start: number,
-    readonly end: number,
+    public start: number,
+    public end: number,
   ) {
     this.time = start;
     this.slowdown = Player.niceSlowdown(12 / Math.max(end - start, 1e-9));

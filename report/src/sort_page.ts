@@ -32,7 +32,7 @@ function fact(text: string, unit: string, label: string): HTMLElement {
   return h("div", {}, h("dd", {}, text, h("span", { class: "unit" }, ` ${unit}`)), h("dt", {}, label));
 }
 
-function facts(sort: SortResult): HTMLElement {
+export function facts(sort: SortResult): HTMLElement {
   return h("div", { class: "cards" }, h("article", { class: "card" }, h("dl", {},
     shareFact(sort, "recovery_mass", "recovery by mass; in brackets 95 %"),
     shareFact(sort, "purity_mass", "purity of the ejected product by mass"),

@@ -2,17 +2,22 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+#include <numbers>
 #include <optional>
 
+#include "base/error.hpp"
 #include "base/units.hpp"
 #include "case/documented.hpp"
 #include "case/load.hpp"
 #include "case/node_path.hpp"
 #include "case/schema.hpp"
 #include "case/toml.hpp"
+#include "shape/stl.hpp"
 #include "simulation/body_checks.hpp"
 #include "simulation/drawing.hpp"
 #include "simulation/forecast.hpp"
+#include "simulation/prospect.hpp"
 
 namespace ejecta {
 namespace {
@@ -23,6 +28,9 @@ Json key_json(const Key& key) {
   Json j{{"name", key.name},          {"help", key.help},
          {"takes", expectation(key)}, {"default", default_words(key)},
          {"example", example(key)},   {"units", known_units(key.dimension)}};
+  j["factors"] = Json::array();
+  for (const std::string& unit : known_units(key.dimension))
+    j["factors"].push_back(to_si(1.0, unit, key.dimension).value_or(0.0));
   if (!key.source.empty()) j["source"] = key.source;
   if (const auto* choice = std::get_if<Choice>(&key.slot)) {
     j["words"] = Json::object();
@@ -49,6 +57,36 @@ Json values_of(Case c, const Node& root) {
   return values;
 }
 
+/// The convex outline of a body from the side, about its centre, m.
+Json outline_of_body(const Body& body) {
+  constexpr int kCorners = 60;
+  Json corners = Json::array();
+  for (int n = 0; n < kCorners; ++n) {
+    const double angle = 2.0 * std::numbers::pi * n / kCorners;
+    const Vec3 towards(std::cos(angle), 0.0, std::sin(angle));
+    const Vec3 corner = body.orientation * body.shape.support(body.orientation.conjugate() * towards);
+    corners.push_back({corner.x(), corner.z()});
+  }
+  return corners;
+}
+
+Json drawing_with_outlines(const Case& c, const Scene& scene) {
+  Json drawing = drawing_of(c, scene);
+  const Company company = company_of(scene);
+  for (std::size_t n = 0; n < company.bodies.size(); ++n)
+    drawing["bodies"][n]["outline"] = outline_of_body(company.bodies[n]);
+  return drawing;
+}
+
+Json commands_for(const Case& c) {
+  if (c.campaign.enabled) return {"campaign"};
+  if (c.sorter.enabled) return {"sort"};
+  Json commands{"run"};
+  if (c.study.enabled) commands.push_back("study");
+  if (c.map.enabled) commands.push_back("map");
+  return commands;
+}
+
 }  // namespace
 
 Json form_of_schema() {
@@ -70,19 +108,35 @@ Json judge_case(const std::string& text, const std::string& path, double bandwid
   std::vector<Problem> problems, warnings, told_already;
   std::optional<Scene> scene;
   try {
-    const Case c = examine_case(text, path, {}, problems, &warnings,
-                                [&](const Case& of) { return check_bodies(of, &scene); });
+    const FurtherChecks further = [&](const Case& of) {
+      return of.campaign.enabled ? std::vector<Problem>{}
+                                 : check_bodies(of, &scene);  // only its parts have any
+    };
+    const Case c = examine_case(text, path, {}, problems, &warnings, further);
     tell(problems);
+    answer["commands"] = commands_for(c);
     answer["values"] = values_of(c, parse_toml(std::make_shared<Source>(Source{path, text}), told_already));
     if (scene && problems.empty()) {
-      answer.update(
-          Json{{"check", check_json(c, *scene, {}, bandwidth)}, {"drawing", drawing_of(c, *scene)}});
+      answer.update(Json{{"check", check_json(c, *scene, {}, bandwidth)},
+                         {"drawing", drawing_with_outlines(c, *scene)}});
     }
     tell(warnings);
   } catch (const InputError& e) {  // no text at all, or of what cannot be built
     tell({{.what = e.what()}});
   }
   return answer;
+}
+
+Json extent_of_stl(const std::string& bytes, const std::string& name) {
+  const TriangleMesh mesh = parse_stl(bytes, 1.0, name);
+  if (mesh.triangles.empty()) throw InputError(fmt::format("{} has no triangles", name));
+  Vec3 low = mesh.vertices.front(), high = low;
+  for (const Vec3& v : mesh.vertices) {
+    low = low.cwiseMin(v);
+    high = high.cwiseMax(v);
+  }
+  const Vec3 size = high - low;
+  return {size.x(), size.y(), size.z()};
 }
 
 }  // namespace ejecta

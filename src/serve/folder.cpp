@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 
 #include "base/error.hpp"
 
@@ -13,15 +14,7 @@ namespace fs = std::filesystem;
 
 constexpr int kDeepest = 3;  ///< folders below the first that are looked into
 
-bool is_run(const fs::path& directory) {
-  std::error_code none;
-  return fs::exists(directory / "manifest.json", none);
-}
-
-bool is_study(const fs::path& directory) {
-  std::error_code none;
-  return fs::exists(directory / "study.json", none);
-}
+constexpr std::array kKinds{"run", "study", "map", "sort", "campaign"};
 
 }  // namespace
 
@@ -54,18 +47,37 @@ Folder::Content Folder::content() const {
   for (auto entry = fs::recursive_directory_iterator(path_, options, failed);
        !failed && entry != fs::recursive_directory_iterator(); entry.increment(failed)) {
     const std::string name = entry->path().lexically_relative(path_).string();
+    const bool hidden = entry->path().filename().string().starts_with('.');
     if (entry->is_directory(failed)) {
-      if (is_run(entry->path())) found.runs.push_back(name);
-      if (is_run(entry->path()) || is_study(entry->path()) || entry.depth() >= kDeepest ||
-          entry->path().filename().string().starts_with('.'))
-        entry.disable_recursion_pending();
-    } else if (entry->path().extension() == ".toml") {
+      const std::string kind = hidden ? "" : kind_of_directory(entry->path());
+      if (!kind.empty()) found.jobs[name] = kind;
+      if (!kind.empty() || hidden || entry.depth() >= kDeepest) entry.disable_recursion_pending();
+    } else if (entry->path().extension() == ".toml" && !hidden) {
       found.cases.push_back(name);
+    } else if (entry->path().extension() == ".log") {
+      const std::string job = name.substr(0, name.size() - 4);
+      if (!kind_of_name(job).empty()) found.jobs.try_emplace(job, kind_of_name(job));
     }
   }
   std::sort(found.cases.begin(), found.cases.end());
-  std::sort(found.runs.begin(), found.runs.end());
   return found;
+}
+
+std::string kind_of_directory(const fs::path& directory) {
+  std::error_code none;
+  if (fs::exists(directory / "manifest.json", none)) return "run";
+  if (fs::exists(directory / "study.json", none)) return "study";
+  const std::string name = kind_of_name(directory.filename().string());
+  if (fs::exists(directory / "state.json", none) &&
+      (name == "sort" || fs::exists(directory / "view.json", none)))
+    return "sort";
+  return name == "campaign" ? name : "";  // nothing in it but its parts
+}
+
+std::string kind_of_name(const std::string& name) {
+  for (const char* kind : kKinds)
+    if (name.ends_with("." + std::string(kind))) return kind;
+  return "";
 }
 
 void require_file_name(const std::string& name, const std::string& extension) {

@@ -1,5 +1,6 @@
 #pragma once
 #include <filesystem>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -16,15 +17,23 @@ class Folder {
   /// one that leads, or links, out of the folder.
   std::filesystem::path inside(const std::string& name) const;
 
-  /// Names of case files and of directories of runs, sorted.
   struct Content {
-    std::vector<std::string> cases, runs;
+    std::vector<std::string> cases;  ///< names of case files, sorted
+    /// What has been started from them, by name, and its kind_of_directory(): also logs of what never came to
+    /// have a directory, with kind_of_name().
+    std::map<std::string, std::string> jobs;
   };
   Content content() const;
 
  private:
   std::filesystem::path path_;  // without links
 };
+
+/// What a directory holds: "run", "sort", "campaign", or "study" for studies and maps, whose study.json says
+/// which; "" for nothing of these.
+std::string kind_of_directory(const std::filesystem::path& directory);
+/// The command that has made it, by the end of its name: "flat-2.map" -> "map"; "" of any other name.
+std::string kind_of_name(const std::string& name);
 
 /// Throws InputError unless it can be the name of a file here: letters, digits, blanks, - _ . and the
 /// extension.

@@ -18,10 +18,13 @@
 #include "output/report.hpp"
 #include "output/results_table.hpp"
 #include "serve/case_desk.hpp"
+#include "serve/changes.hpp"
+#include "serve/file_answer.hpp"
 #include "serve/folder.hpp"
 #include "serve/guard.hpp"
-#include "serve/run_list.hpp"
+#include "serve/job_list.hpp"
 #include "simulation/forecast.hpp"
+#include "study/study.hpp"
 
 namespace ejecta {
 namespace {
@@ -34,17 +37,8 @@ constexpr int kThreads = 48;  ///< connections that are served at once
 constexpr int kStreams = 32;  ///< of them with live events, each of which holds a thread
 constexpr std::size_t kLargestText = 1 << 20, kLargestUpload = 64 << 20;
 constexpr std::size_t kMostCompared = 50;
-constexpr auto kBetweenLooks = std::chrono::milliseconds(500);
-
-/// What is sent when a file of the folder is asked for.
-const char* type_of(const std::filesystem::path& file) {
-  const std::string end = file.extension().string();
-  if (end == ".html") return "text/html; charset=utf-8";
-  if (end == ".json") return "application/json";
-  if (end == ".csv") return "text/csv; charset=utf-8";
-  if (end == ".toml" || end == ".log") return "text/plain; charset=utf-8";
-  return nullptr;
-}
+constexpr auto kBetweenLooks = std::chrono::seconds(1);  ///< so often a run says how far it is
+constexpr auto kSignOfLife = std::chrono::seconds(5);
 
 void answer(Response& response, const Json& json) {
   response.set_content(json.dump(-1, ' ', false, Json::error_handler_t::replace), "application/json");
@@ -69,29 +63,28 @@ std::string text_of(const Json& body, const char* name) {
 
 struct Workbench::Parts {
   Folder folder;
-  RunList runs;
+  JobList jobs;
   httplib::Server server;
   int port;
   Guard guard;
   double bandwidth = measured_bandwidth();
   std::atomic<int> streams{0}, temporary_files{0};
 
-  // The runs as they were last looked at; who waits for events is woken when something has changed.
+  // The folder as it was last looked at; who waits for events is woken when something has changed.
   std::mutex mutex;
-  std::condition_variable changed;
-  std::string shown;
-  std::int64_t version = 0;
-  bool ends = false;
+  std::condition_variable changed, wanted;
+  Changes changes;
+  bool ends = false, look_now = false;
   std::thread looks, serves;
 
   explicit Parts(const ServeOptions& o)
-      : folder(o.folder), runs(folder, o.program), port(bind(o.port)), guard(port) {
+      : folder(o.folder), jobs(folder, o.program), port(bind(o.port)), guard(port) {
     set_limits();
     set_guard();
     add_pages();
     add_comparisons();
     add_cases();
-    add_runs();
+    add_jobs();
     looks = std::thread([this] { keep_looking(); });
     serves = std::thread([this] { server.listen_after_bind(); });
   }
@@ -102,6 +95,7 @@ struct Workbench::Parts {
       ends = true;
     }
     changed.notify_all();
+    wanted.notify_all();
     while (!server.is_running()) std::this_thread::yield();  // stop() before it has begun is lost
     server.stop();
     looks.join();
@@ -138,8 +132,9 @@ struct Workbench::Parts {
                                              .origin = request.get_header_value("Origin"),
                                              .cookies = request.get_header_value("Cookie"),
                                              .token = request.get_param_value("token")});
-      if (why.empty()) return Handled::Unhandled;
-      refuse(response, 403, why);
+      if (why.empty() && request.ranges.empty()) return Handled::Unhandled;
+      if (why.empty()) refuse(response, 400, "parts of files are asked for with ?from=BYTE");
+      else refuse(response, 403, why);
       return Handled::Handled;
     });
     server.set_exception_handler([](const Request&, Response& response, std::exception_ptr p) {
@@ -183,14 +178,13 @@ struct Workbench::Parts {
         return refuse(response, 501, "this program was built without its page (npm was not there)");
       response.set_content(page.data(), page.size(), "text/html; charset=utf-8");
     });
-    // Files of runs. A page among them may not ask this server in the name of whoever looks at it.
+    // Files of jobs. A page among them may not ask this server in the name of whoever looks at it.
+    // ?from=BYTE: what has come behind that byte.
     server.Get(R"(/files/(.+))", [this](const Request& request, Response& response) {
       const std::filesystem::path file = folder.inside(request.matches[1]);
-      const char* type = type_of(file);
-      if (!type || !std::filesystem::is_regular_file(file))
-        return refuse(response, 404, "there is no such file");
+      if (!is_shown(file)) return refuse(response, 404, "there is no such file");
       response.set_header("Content-Security-Policy", "sandbox allow-scripts allow-downloads");
-      response.set_content(output::read_file(file), type);
+      send_file(file, request.get_param_value("from"), response);
     });
   }
 
@@ -263,6 +257,16 @@ struct Workbench::Parts {
       output::write_file(file, text);
       return Json{{"text", text}, {"digest", sha256_hex(text)}};
     });
+    post("/api/copy", [this](const Json& body) {
+      const std::string name = text_of(body, "name"), copy = text_of(body, "copy");
+      const std::string text = read_case(name);
+      require_file_name(copy, ".toml");
+      // Beside it: what it names, it finds there.
+      const auto file = folder.inside((std::filesystem::path(name).parent_path() / copy).string());
+      if (std::filesystem::exists(file)) throw Conflict(fmt::format("there is a case {} already", copy));
+      output::write_file(file, text);
+      return Json{{"name", file.lexically_relative(folder.path()).string()}};
+    });
     // Saves only over what the page has seen: another page or an editor may have changed it.
     post("/api/save", [this](const Json& body) {
       const std::string name = text_of(body, "name"), text = text_of(body, "text");
@@ -281,13 +285,17 @@ struct Workbench::Parts {
       if (body.value("remove", false)) return Json{{"text", without_key(text, key)}};
       return Json{{"text", with_key(text, key, text_of(body, "value"))}};
     });
+    // A shape comes to lie beside the case that is to have it.
     server.Post("/api/upload", [this](const Request& request, Response& response) {
       const std::string name = request.get_param_value("name");
       require_file_name(name, ".stl");
-      const auto file = folder.inside(name);
-      if (std::filesystem::exists(file)) throw Conflict(fmt::format("there is a file {} already", name));
-      output::write_file(file, request.body);
-      answer(response, {{"name", name}});
+      const std::filesystem::path beside = folder.inside(request.get_param_value("case")).parent_path();
+      const auto file = folder.inside((beside / name).lexically_relative(folder.path()).string());
+      const Json size = extent_of_stl(request.body, name);
+      if (!std::filesystem::exists(file)) output::write_file(file, request.body);
+      else if (output::read_file(file) != request.body)
+        throw Conflict(fmt::format("there is another file {} already", name));
+      answer(response, {{"name", name}, {"extent", size}});
     });
   }
 
@@ -298,15 +306,27 @@ struct Workbench::Parts {
     return output::read_file(file);
   }
 
-  void add_runs() {
-    server.Get("/api/runs", [this](const Request&, Response& response) { answer(response, runs.all()); });
-    post("/api/start", [this](const Json& body) { return Json{{"run", runs.start(text_of(body, "case"))}}; });
-    post("/api/resume", [this](const Json& body) {
-      runs.resume(text_of(body, "run"));
+  void add_jobs() {
+    server.Get("/api/jobs",
+               [this](const Request&, Response& response) { answer(response, jobs.all(folder.content())); });
+    server.Get("/api/study", [this](const Request& request, Response& response) {
+      answer(response, study_result(TaskStore::open(folder.inside(request.get_param_value("name")))));
+    });
+    post_job("/api/start", [this](const Json& body) {
+      return Json{{"job", jobs.start(text_of(body, "case"), text_of(body, "kind"))}};
+    });
+    post_job("/api/resume", [this](const Json& body) {
+      jobs.resume(text_of(body, "job"));
       return Json::object();
     });
-    post("/api/stop", [this](const Json& body) {
-      runs.stop(text_of(body, "run"));
+    post_job("/api/stop", [this](const Json& body) {
+      jobs.stop(text_of(body, "job"));
+      return Json::object();
+    });
+    post_job("/api/at-once", [this](const Json& body) {
+      if (!body.is_object() || !body.contains("count") || !body["count"].is_number_integer())
+        throw InputError("the request has no \"count\"");
+      jobs.set_at_once(body["count"].get<int>());
       return Json::object();
     });
     server.Get("/api/events", [this](const Request&, Response& response) {
@@ -314,6 +334,7 @@ struct Workbench::Parts {
         --streams;
         return refuse(response, 503, "too many pages are open");
       }
+      look_soon();
       auto seen = std::make_shared<std::int64_t>(0);
       response.set_chunked_content_provider(
           "text/event-stream",
@@ -322,35 +343,58 @@ struct Workbench::Parts {
     });
   }
 
-  /// The runs when they have changed, else a word now and then by which a closed page is noticed.
+  /// What changes the jobs: pages are told at once.
+  template <class Act>
+  void post_job(const char* path, const Act& act) {
+    post(path, [this, act](const Json& body) {
+      const Json done = act(body);
+      look_soon();
+      return done;
+    });
+  }
+
+  /// What has changed since the last event, else a word now and then by which a closed page is noticed.
   bool send_event(std::int64_t& seen, httplib::DataSink& sink) {
     std::string event = ":\n\n";
     {
       std::unique_lock lock(mutex);
-      changed.wait_for(lock, std::chrono::seconds(5), [&] { return ends || version != seen; });
+      changed.wait_for(lock, kSignOfLife, [&] { return ends || changes.version() != seen; });
       if (ends) return false;
-      if (version != seen) event = "data: " + shown + "\n\n";
-      seen = version;
+      if (changes.version() != seen) event = "data: " + changes.since(seen) + "\n\n";
+      seen = changes.version();
     }
     return sink.write(event.data(), event.size());
   }
 
+  void look_soon() {
+    {
+      const std::lock_guard lock(mutex);
+      look_now = true;
+    }
+    wanted.notify_all();
+  }
+
   void keep_looking() {
     std::unique_lock lock(mutex);
-    while (!changed.wait_for(lock, kBetweenLooks, [&] { return ends; })) {
-      if (streams == 0) continue;
+    while (!ends) {
+      wanted.wait_for(lock, kBetweenLooks, [&] { return ends || look_now; });
+      look_now = false;
       lock.unlock();
-      std::string now;
+      Json now, rest;
       try {
-        now = runs.all().dump(-1, ' ', false, Json::error_handler_t::replace);
-      } catch (const std::exception&) {
-        // The folder cannot be read just now.
+        jobs.advance();
+        if (streams > 0) {
+          const Folder::Content content = folder.content();
+          now = jobs.all(content);
+          rest = jobs.settings();
+          rest["trouble"] = "";
+          rest["cases"] = content.cases;
+        }
+      } catch (const std::exception& e) {  // the folder cannot be read just now, or its queue
+        rest = {{"trouble", e.what()}};
       }
       lock.lock();
-      if (now.empty() || now == shown) continue;
-      shown = std::move(now);
-      ++version;
-      changed.notify_all();
+      if (!rest.empty() && changes.look(now, rest)) changed.notify_all();
     }
   }
 };

@@ -416,6 +416,35 @@ class Jobs(unittest.TestCase):
         study = ejecta.study(case, out=place("ball.study"), overwrite=True)
         self.assertEqual(len(study.runs), 2)
 
+    def test_sorter(self):
+        case = ejecta.Case.load("sorter/tutorial")
+        case["sorter.particles"] = 300
+        directory = place("machine.sort")
+        sorting = ejecta.sort(case, out=directory, threads=1)
+        self.assertEqual(sorting.result, json.loads((directory / "result.json").read_text()))
+        self.assertTrue(sorting.recovery.low <= sorting.recovery <= sorting.recovery.high, sorting.recovery)
+        self.assertEqual(sum(fate["number"] for fate in sorting.fates), sorting["particles"])
+        self.assertIn("recovery", repr(sorting))
+        again = ejecta.sort(case, out=directory)
+        self.assertEqual(again["particles"], sorting["particles"], "it is done already")
+        case["sorter.throughput"] = "4 t/h"
+        with self.assertRaisesRegex(ejecta.InputError, "another case"):
+            ejecta.sort(case, out=directory)
+        with self.assertRaisesRegex(ejecta.InputError, "has no \\[sorter\\]"):
+            ejecta.sort(BALL, out=place("no.sort"))
+
+    def test_campaign(self):
+        folder = place("campaign")
+        folder.mkdir(parents=True)
+        ejecta.Case(BALL).save(folder / "ball.toml")
+        (folder / "both.toml").write_text('[campaign]\ntitle = "two"\n[[campaign.part]]\nkind = "run"\ncase = "ball.toml"\n'
+                                          '[[campaign.part]]\nkind = "run"\ncase = "ball.toml"\nset = ["run.end_time=10 ms"]\n')
+        campaign = ejecta.campaign(folder / "both.toml", out=folder / "both.campaign")
+        self.assertEqual([part["done"] for part in campaign.parts], [True, True])
+        ends = [campaign.part(n).history("body-ball")["time"][-1] for n in range(2)]
+        numpy.testing.assert_allclose(ends, [0.02, 0.01], rtol=0.01)
+        self.assertIn("2 of 2 parts done", repr(campaign))
+
     def test_margin(self):
         margin = ejecta.Margin("tutorial", ["body.particle.size"])
         margin.case.update({"run.end_time": "100 us", "output.report": False})

@@ -1,4 +1,5 @@
-// The workbench in a real browser: from the form to the verdict, wrong entries, reload, a server that dies, stop.
+// The workbench in a real browser: from the form to the verdict, wrong entries, reload, a server that dies, stop, a
+// shape from a file, a queue, a study, a live picture, keyboard alone; axe-core finds nothing against any view.
 // node page_test.mjs NODE_MODULES_OF_REPORT SCREENSHOTS PROGRAM SOURCE SCRATCH; ends with 77 (skipped) without a browser.
 import assert from "node:assert/strict";
 import { spawn } from "node:child_process";
@@ -15,14 +16,44 @@ const skip = (why) => {
 const browserPath = ["/usr/bin/chromium", "/usr/bin/google-chrome"].find(existsSync);
 if (!browserPath) skip("no chromium");
 if (!existsSync(path.join(modules, "playwright-core"))) skip("no playwright-core: the page was not built");
-const { chromium } = createRequire(path.join(modules, "x.js"))("playwright-core");
+const require = createRequire(path.join(modules, "x.js"));
+const { chromium } = require("playwright-core");
+const axe = readFileSync(require.resolve("axe-core/axe.min.js"), "utf8");
 
 rmSync(scratch, { recursive: true, force: true });
 mkdirSync(scratch, { recursive: true });
 mkdirSync(screenshots, { recursive: true });
 const small = readFileSync(path.join(source, "tests", "app", "small-ejection.toml"), "utf8");
 writeFileSync(path.join(scratch, "small.toml"), small.replace('end_time = "6 ms"', 'end_time = "1 ms"   # short'));
-writeFileSync(path.join(scratch, "slow.toml"), small.replace('end_time = "6 ms"', 'end_time = "60 ms"'));
+for (const name of ["slow.toml", "next.toml"]) writeFileSync(path.join(scratch, name), small.replace('end_time = "6 ms"', 'end_time = "60 ms"'));
+writeFileSync(path.join(scratch, "sizes.toml"), `[run]
+end_time = "20 ms"
+[flow]
+solver = "none"
+[[body]]
+name = "ball"
+shape = "sphere"
+diameter = "10 mm"
+[study]
+quantities = ["/bodies/0/peak_speed_m_s"]
+[[study.vary]]
+key = "run.end_time"
+values = ["5 ms", "10 ms", "15 ms", "20 ms"]
+`);
+for (const name of ["sorter/tutorial.toml", "paper/setup"]) cpSync(path.join(source, "cases", name), path.join(scratch, name), { recursive: true });
+writeFileSync(path.join(scratch, "both.toml"), `[campaign]
+[[campaign.part]]
+kind = "study"
+case = "sizes.toml"
+`);
+
+/** A box as an STL file, in a unit that only its owner knows. */
+function rock([x, y, z]) {
+  const corner = (n) => `${n & 1 ? x : 0} ${n & 2 ? y : 0} ${n & 4 ? z : 0}`;
+  const quads = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+  const facets = quads.flatMap(([a, b, c, d]) => [[a, b, c], [a, c, d]]).map((f) => `facet normal 0 0 0\nouter loop\n${f.map((n) => `vertex ${corner(n)}\n`).join("")}endloop\nendfacet\n`);
+  return `solid rock\n${facets.join("")}endsolid rock\n`;
+}
 
 async function serve(port) {
   const server = spawn(program, ["serve", scratch, ...(port ? ["--port", String(port)] : [])], { stdio: ["ignore", "pipe", "inherit"] });
@@ -46,8 +77,26 @@ async function open(viewport = { width: 1440, height: 900 }, colorScheme = "ligh
   await page.waitForSelector("html[data-ready]");
   return page;
 }
-const row = (page, name) => page.locator(`tr[data-run="${name}"]`);
+const row = (page, name) => page.locator(`tr[data-job="${name}"]`);
+const listed = (name, state) => `tr[data-job="${name}"]${state ? `.${state}` : ""}`;
 const say = (words) => console.log(words);
+/** Nobody is shut out: axe-core finds nothing. */
+async function accessible(page, view) {
+  await page.evaluate(axe);
+  const { violations } = await page.evaluate(() => axe.run(document, { resultTypes: ["violations"] }));
+  assert.deepEqual(violations.map((v) => `${v.id}: ${v.nodes.map((n) => n.html).slice(0, 3).join(" | ")}`), [], view);
+}
+async function picture(page, name) {
+  assert.equal(await page.evaluate(() => document.documentElement.scrollWidth - innerWidth), 0, `${name} scrolls sideways`);
+  await accessible(page, name);
+  await page.screenshot({ path: path.join(screenshots, `workbench-${name}.png`), fullPage: true });
+}
+async function openCase(page, name) {
+  await page.getByRole("button", { name, exact: true }).click();
+  await page.locator("#case-name").getByText(name, { exact: true }).waitFor();
+  await page.waitForSelector(".field.given", { state: "attached" });
+}
+const toRuns = (page) => page.getByRole("button", { name: "Runs", exact: true }).click();
 
 try {
   const page = await open();
@@ -63,8 +112,7 @@ try {
   if (process.env.EJECTA_TIMED) assert.ok(paint < 1000); // on a machine that does nothing else
 
   // Form and text are one case.
-  await page.getByRole("button", { name: "small.toml" }).click();
-  await page.waitForSelector(".field.given");
+  await openCase(page, "small.toml");
   const text = page.locator("#text");
   const field = page.locator(`[id="key-valve.duration"]`);
   await field.fill("5");
@@ -76,12 +124,13 @@ try {
   await page.waitForFunction(() => document.querySelector('[id="key-valve.duration"]').value === "7");
 
   // A wrong entry is said where it stands, in the words of the program.
-  const start = page.locator("#start");
+  const start = page.locator('[data-start="run"]');
   await text.fill((await text.inputValue()).replace('duration = "7 ms"', 'duration = "7 mm"'));
   await page.waitForSelector(".problems .error");
   assert.ok(await start.isDisabled());
   assert.match(await page.locator(".problems .error").first().textContent(), /valve\.duration.*a time/s);
   assert.match(await page.locator(".fault.error").first().textContent(), /expected: a time/);
+  await accessible(page, "a wrong entry");
   await page.screenshot({ path: path.join(screenshots, "workbench-error.png") });
   await text.fill((await text.inputValue()).replace('duration = "7 mm"', 'duration = "7 ms"'));
   await page.waitForFunction(() => !document.querySelector(".problems .error"));
@@ -89,24 +138,25 @@ try {
 
   // What is typed fast arrives whole, and the checker keeps up.
   await text.press("Control+End");
-  const typed = "# " + "abcdefgh ".repeat(100);
+  const typed = "# " + "abcdefgh ".repeat(Number(process.env.EJECTA_KEYS ?? 900) / 9);
   const before = Date.now();
-  await text.pressSequentially(typed);
+  await text.pressSequentially(typed, { timeout: 0 });
   say(`${typed.length} keys typed in ${Date.now() - before} ms`);
   assert.ok((await text.inputValue()).endsWith(typed));
-  await page.screenshot({ path: path.join(screenshots, "workbench-case.png") });
 
   // Two tabs: the second does not save over the first.
   const context = page.context();
   const other = await open(undefined, undefined, context);
-  await other.getByRole("button", { name: "small.toml" }).click();
-  await other.waitForSelector(".field.given");
+  await openCase(other, "small.toml");
 
-  // A double click is one run; it comes to its verdict.
+  // A double click is one run, which is shown as it goes; it comes to its verdict.
   await start.dblclick();
-  await page.waitForSelector('tr[data-run="small.run"]');
-  await page.waitForSelector('tr[data-run="small.run"].done', { timeout: 120000 });
-  assert.equal(await page.locator("tr[data-run]").count(), 1, "one run");
+  await page.waitForSelector("section.job.done", { timeout: 120000 });
+  await page.waitForSelector(".live canvas.stage");
+  await page.waitForSelector(".live .u-wrap");
+  assert.match(await page.locator(".verdict-line").textContent(), /particle/);
+  await toRuns(page);
+  assert.equal(await page.locator("tr[data-job]").count(), 1, "one run");
   assert.match(await row(page, "small.run").textContent(), /particle/);
   await other.locator("#text").press("Control+End");
   await other.locator("#text").pressSequentially("# other");
@@ -117,42 +167,107 @@ try {
   await report.waitForSelector("html[data-ready]", { timeout: 30000 });
   await report.close();
 
-  // The page and the server may go and come back in the middle of a run.
-  await page.getByRole("button", { name: "slow.toml" }).click();
-  await page.waitForSelector(".field.given");
-  await start.click();
-  await page.waitForSelector('tr[data-run="slow.run"].running', { timeout: 60000 });
+  // Several are a queue. Page and server may go and come back in the middle of it.
+  for (const name of ["slow.toml", "next.toml"]) {
+    await openCase(page, name);
+    await start.click();
+    await page.waitForSelector("section.job");
+  }
+  await toRuns(page);
+  await page.waitForSelector(listed("slow.run", "running"), { timeout: 60000 });
+  await page.waitForSelector(listed("next.run", "waiting"));
   await page.reload();
-  await page.waitForSelector('tr[data-run="slow.run"].running');
+  await page.waitForSelector(listed("slow.run", "running"));
   server.kill("SIGKILL");
   await page.waitForSelector(".lost:not([hidden])");
   ({ server, address } = await serve(port));
   const again = await open();
-  await again.waitForSelector('tr[data-run="slow.run"].running');
-  await again.screenshot({ path: path.join(screenshots, "workbench-runs.png") });
+  await again.waitForSelector(listed("slow.run", "running"));
+  await again.waitForSelector(listed("next.run", "waiting"));
+  await again.getByRole("button", { name: "Cancel next.run" }).click();
+  await again.waitForSelector(listed("next.run"), { state: "detached" });
+
+  // The jet with the body while it runs: the picture moves on by itself.
+  await again.getByRole("button", { name: "Look at slow.run" }).click();
+  await again.waitForFunction(() => parseFloat(document.querySelector(".live .clock")?.textContent) > 0.3, null, { timeout: 60000 });
+  const clock = () => again.locator(".live .clock").textContent();
+  const shown = await clock();
+  await again.waitForFunction((then) => document.querySelector(".live .clock").textContent !== then, shown, { timeout: 60000 });
+  say(`slider ${await again.locator(".live input[type=range]").inputValue()}`);
+  await picture(again, "live");
+  await again.getByRole("button", { name: "All runs" }).click();
 
   // By the keyboard alone: to the button that stops it.
   const stop = again.getByRole("button", { name: "Stop slow.run" });
-  for (let n = 0; n < 60 && !(await stop.evaluate((b) => b === document.activeElement)); ++n) await again.keyboard.press("Tab");
-  assert.ok(await stop.evaluate((b) => b === document.activeElement), "the keyboard reaches it");
+  const tabTo = async (target) => {
+    const there = () => target.evaluate((b) => b === document.activeElement);
+    for (let n = 0; n < 80 && !(await there()); ++n) await again.keyboard.press("Tab");
+    assert.ok(await there(), "the keyboard reaches it");
+  };
+  await tabTo(stop);
   await again.keyboard.press("Enter");
-  await again.waitForSelector('tr[data-run="slow.run"].stopped', { timeout: 60000 });
+  await again.waitForSelector(listed("slow.run", "stopped"), { timeout: 60000 });
   assert.ok(await again.getByRole("button", { name: "Resume slow.run" }).isVisible());
 
-  // A first case of somebody who has none.
-  await again.getByLabel("Name of a new case").fill("mine");
-  await again.getByRole("button", { name: "New case" }).click();
+  // By the keyboard alone: a first case of somebody who has none, with the rock that he has as a file.
+  await again.keyboard.press("Home");
+  await tabTo(again.getByLabel("Name of a new case"));
+  await again.keyboard.type("mine");
+  await again.keyboard.press("Enter");
   await again.waitForSelector(".drawing .body");
   assert.ok(existsSync(path.join(scratch, "mine.toml")));
+  const [chooser] = await Promise.all([again.waitForEvent("filechooser"), tabTo(again.locator("#shape")).then(() => again.keyboard.press("Enter"))]);
+  await chooser.setFiles({ name: "rock.stl", mimeType: "model/stl", buffer: Buffer.from(rock([20, 10, 5])) });
+  await again.waitForSelector(".shapes fieldset");
+  await again.waitForFunction(() => !document.querySelector(".problems .error") && document.querySelector(".shapes .size").textContent.includes("20.0"));
+  const mine = () => again.locator("#text").inputValue();
+  assert.match(await mine(), /scale = 0\.001/, "millimetres are guessed");
+  assert.match(await again.locator(".shapes .note").textContent(), /mm is guessed/);
+  const outline = () => again.locator(".drawing .body").getAttribute("points");
+  const flat = await outline();
+  await again.getByRole("button", { name: "Turn rock.stl about x" }).click();
+  await again.waitForFunction(() => /^rotation_angle = "90 deg"/m.test(document.querySelector("#text").value));
+  await again.waitForFunction((then) => document.querySelector(".drawing .body").getAttribute("points") !== then, flat);
+  await again.getByRole("button", { name: "Turn rock.stl about z" }).click();
+  await again.waitForFunction(() => /^rotation_angle = "120 deg"/m.test(document.querySelector("#text").value));
+  await again.getByRole("button", { name: "as in the file" }).click();
+  await again.waitForFunction(() => !/^rotation_/m.test(document.querySelector("#text").value));
+  await again.locator("#shape-0-unit").selectOption("in");
+  await again.waitForFunction(() => /scale = 0\.0254/.test(document.querySelector("#text").value));
+  await again.locator("#shape-0-unit").selectOption("mm");
+  await again.locator("#save").click(); // before the page has heard that the text is changed
+  await again.waitForFunction(() => document.querySelector("#save").disabled);
+  assert.match(readFileSync(path.join(scratch, "mine.toml"), "utf8"), /^scale = 0\.001/m);
 
-  for (const [width, scheme] of [[1440, "dark"], [800, "light"], [390, "light"], [390, "dark"]]) {
+  // A study: its curves come with its runs.
+  await openCase(again, "sizes.toml");
+  await again.getByRole("button", { name: "Start study" }).click();
+  await again.waitForSelector("section.job.done", { timeout: 60000 });
+  await again.waitForSelector(".job-content .u-wrap");
+  await picture(again, "study");
+
+  // A sorter, and a campaign.
+  await openCase(again, "sorter/tutorial.toml");
+  await again.getByRole("button", { name: "Start sorter" }).click();
+  await again.waitForSelector("section.job.done", { timeout: 60000 });
+  await again.waitForSelector(".sort-view canvas");
+  await picture(again, "sorter");
+  await openCase(again, "both.toml");
+  await again.getByRole("button", { name: "Start campaign" }).click();
+  await again.waitForSelector("section.job.done", { timeout: 60000 });
+  await again.waitForSelector(".job-content tbody tr");
+  await picture(again, "campaign");
+
+  for (const [width, scheme] of [[1440, "light"], [1440, "dark"], [800, "light"], [800, "dark"], [390, "light"], [390, "dark"]]) {
     const small = await open({ width, height: 900 }, scheme);
-    assert.equal(await small.evaluate(() => document.documentElement.scrollWidth - innerWidth), 0, `scrolls sideways at ${width}`);
-    await small.screenshot({ path: path.join(screenshots, `workbench-runs-${width}-${scheme}.png`), fullPage: true });
-    await small.getByRole("button", { name: "mine.toml" }).click();
+    await picture(small, `runs-${width}-${scheme}`);
+    await openCase(small, "mine.toml");
     await small.waitForSelector(".drawing .body");
-    assert.equal(await small.evaluate(() => document.documentElement.scrollWidth - innerWidth), 0, `scrolls sideways at ${width}`);
-    await small.screenshot({ path: path.join(screenshots, `workbench-case-${width}-${scheme}.png`), fullPage: true });
+    await picture(small, `case-${width}-${scheme}`);
+    await toRuns(small);
+    await small.getByRole("button", { name: "Look at slow.run" }).click();
+    await small.waitForSelector(".live .u-wrap");
+    await picture(small, `job-${width}-${scheme}`);
     await small.context().close();
   }
 
@@ -165,8 +280,12 @@ try {
   const long = await open();
   const begun = Date.now();
   await long.reload();
-  await long.waitForFunction(() => document.querySelectorAll("tr[data-run]").length > 1000);
-  say(`1000 runs shown in ${Date.now() - begun} ms`);
+  await long.waitForFunction(() => document.querySelectorAll("tr[data-job]").length > 1000);
+  const took = Date.now() - begun;
+  say(`1000 runs shown in ${took} ms`);
+  if (process.env.EJECTA_TIMED) assert.ok(took < 1000);
+  await long.getByLabel("Show").fill("copy-99");
+  assert.equal(await long.locator("tr[data-job]:visible").count(), 11);
 
   await browser.newPage().then(async (stranger) => {
     const answer = await stranger.goto(`http://127.0.0.1:${port}/`);

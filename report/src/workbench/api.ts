@@ -19,7 +19,7 @@ export interface Drawing {
   box?: [[number, number], [number, number]];
   nozzle?: [number, number];
   plate?: [number, number];
-  bodies: { name: string; low: [number, number]; high: [number, number]; path: [number, number][] }[];
+  bodies: { name: string; low: [number, number]; high: [number, number]; outline: [number, number][]; path: [number, number][] }[];
 }
 
 export interface BodyCheck {
@@ -31,9 +31,13 @@ export interface BodyCheck {
   at_plate_s?: number;
 }
 
+/** Commands of the program that are started from the page. */
+export type Kind = "run" | "study" | "map" | "sort" | "campaign";
+
 export interface Judgement {
   problems: Problem[];
   values?: Record<string, Value>;
+  commands?: Kind[];
   check?: {
     title: string;
     cells?: number;
@@ -51,6 +55,8 @@ export interface Key {
   default: string;
   example: string;
   units: string[];
+  /** SI units in one of `units`. */
+  factors: number[];
   source?: string;
   words?: Record<string, string>;
   yes_or_no?: boolean;
@@ -63,18 +69,30 @@ export interface SchemaSection {
   keys: Key[];
 }
 
-export interface RunState {
+export interface Job {
   name: string;
+  kind: Kind;
   case: string;
-  state: "starting" | "running" | "done" | "stopped" | "diverged" | "failed";
+  state: "waiting" | "starting" | "running" | "done" | "stopped" | "diverged" | "failed";
+  /** Jobs that wait before it. */
+  before?: number;
   fraction?: number;
   time_s?: number;
   eta_s?: number | null;
   wall_time_s?: number;
+  progress?: string;
   verdict?: string;
   title?: string;
   report: boolean;
   said?: string;
+}
+
+/** The folder as it is. */
+export interface FolderState {
+  jobs: Job[];
+  cases: string[];
+  at_once: number;
+  trouble: string;
 }
 
 async function answered<T>(response: Response): Promise<T> {
@@ -93,40 +111,81 @@ async function post<T>(path: string, body: object, signal?: AbortSignal): Promis
   return answered<T>(await fetch(path, request));
 }
 
+/** The address of a file of a job. */
+export const fileOf = (job: string, file: string): string => `/files/${[...job.split("/"), ...file.split("/")].map(encodeURIComponent).join("/")}`;
+
 export const api = {
   schema: () => get<SchemaSection[]>("/api/schema"),
   cases: () => get<{ folder: string; cases: string[] }>("/api/cases"),
-  runs: () => get<RunState[]>("/api/runs"),
+  jobs: () => get<Job[]>("/api/jobs"),
+  study: <T>(name: string) => get<T>(`/api/study?name=${encodeURIComponent(name)}`),
+  json: <T>(job: string, file: string) => get<T>(fileOf(job, file)),
   open: (name: string) => post<{ text: string; digest: string }>("/api/open", { name }),
   create: (name: string) => post<{ text: string; digest: string }>("/api/new", { name }),
+  copy: (name: string, copy: string) => post<{ name: string }>("/api/copy", { name, copy }),
   save: (name: string, text: string, digest: string) => post<{ digest: string }>("/api/save", { name, text, digest }),
   check: (name: string, text: string, signal: AbortSignal) => post<Judgement>("/api/check", { name, text }, signal),
   set: (text: string, key: string, value: string) => post<{ text: string }>("/api/set", { text, key, value }),
   unset: (text: string, key: string) => post<{ text: string }>("/api/set", { text, key, remove: true }),
-  start: (name: string) => post<{ run: string }>("/api/start", { case: name }),
-  resume: (run: string) => post<object>("/api/resume", { run }),
-  stop: (run: string) => post<object>("/api/stop", { run }),
-  upload: async (file: File) =>
-    answered<{ name: string }>(await fetch(`/api/upload?name=${encodeURIComponent(file.name)}`, { method: "POST", body: file })),
+  start: (name: string, kind: Kind) => post<{ job: string }>("/api/start", { case: name, kind }),
+  resume: (job: string) => post<object>("/api/resume", { job }),
+  stop: (job: string) => post<object>("/api/stop", { job }),
+  atOnce: (count: number) => post<object>("/api/at-once", { count }),
+  /** `extent`: along x, y, z in the unit of the file, which nobody knows. */
+  upload: async (file: File, caseName: string) => answered<{ name: string; extent: [number, number, number] }>(
+    await fetch(`/api/upload?name=${encodeURIComponent(file.name)}&case=${encodeURIComponent(caseName)}`, { method: "POST", body: file })),
 };
 
-/** Tells of the runs whenever they change: by events, or by asking where those do not come. */
-export function watchRuns(show: (runs: RunState[]) => void, reachable: (yes: boolean) => void): void {
-  const events = new EventSource("/api/events");
-  events.onmessage = (message) => {
-    reachable(true);
-    show(JSON.parse(String(message.data)) as RunState[]);
-  };
-  events.onopen = () => reachable(true);
-  events.onerror = () => {
-    reachable(false);
-    api.runs().then((runs) => {
-      reachable(true);
-      show(runs);
-    }, () => undefined);
-    if (events.readyState === EventSource.CLOSED) {
-      events.close();
-      setTimeout(() => watchRuns(show, reachable), 2000);
+/** Reads a file that grows by whole lines: each call gives those that have come. */
+export class GrowingFile {
+  private read = 0;
+  constructor(private readonly address: string) {}
+
+  /** null: it is another file than before, which begins anew with the next call. */
+  async more(): Promise<string[] | null> {
+    const response = await fetch(`${this.address}?from=${this.read}`);
+    if (response.status === 404) return [];
+    if (!response.ok) {
+      this.read = 0;
+      return null;
     }
+    const bytes = new Uint8Array(await response.arrayBuffer());
+    const end = bytes.lastIndexOf(10) + 1;
+    this.read += end;
+    return new TextDecoder().decode(bytes.subarray(0, end)).split("\n").slice(0, -1);
+  }
+}
+
+interface Event extends Partial<FolderState> {
+  jobs: Job[];
+  gone: string[];
+  all?: boolean;
+}
+
+/** Tells of the folder whenever it changes: by events, or by asking where those do not come. */
+export function watchFolder(show: (state: FolderState) => void, reachable: (yes: boolean) => void): void {
+  const jobs = new Map<string, Job>();
+  const state: FolderState = { jobs: [], cases: [], at_once: 1, trouble: "" };
+  const take = ({ jobs: changed, gone, all, ...rest }: Event): void => {
+    if (all) jobs.clear();
+    for (const name of gone) jobs.delete(name);
+    for (const job of changed) jobs.set(job.name, job);
+    Object.assign(state, rest, { jobs: [...jobs.values()] });
+    reachable(true);
+    show(state);
   };
+  const connect = (): void => {
+    const events = new EventSource("/api/events");
+    events.onmessage = (message) => take(JSON.parse(String(message.data)) as Event);
+    events.onopen = () => reachable(true);
+    events.onerror = () => {
+      reachable(false);
+      Promise.all([api.jobs(), api.cases()]).then(([list, { cases }]) => take({ jobs: list, gone: [], all: true, cases }), () => undefined);
+      if (events.readyState === EventSource.CLOSED) {
+        events.close();
+        setTimeout(connect, 2000);
+      }
+    };
+  };
+  connect();
 }

@@ -2,14 +2,18 @@
 
 import { h } from "../dom";
 import { duration, fixed, thousands } from "../format";
-import { api, type Judgement, type Problem, type SchemaSection } from "./api";
+import { api, type Judgement, type Kind, type Problem, type SchemaSection } from "./api";
 import { drawingView } from "./drawing";
 import { Form } from "./form";
+import { ShapePanel } from "./shape_panel";
 
 const PAUSE = 120; // ms without a key until the text is checked
 
+const START: Record<Kind, string> = { run: "Start", study: "Start study", map: "Start map", sort: "Start sorter", campaign: "Start campaign" };
+
 export class CaseView {
   readonly element: HTMLElement;
+  private readonly head: HTMLElement;
   private readonly form: Form;
   private readonly text = h("textarea", { id: "text", spellcheck: "false", autocomplete: "off", wrap: "off", "aria-label": "The case as text (TOML)" });
   private readonly lines = h("div", { class: "lines", "aria-hidden": "true" });
@@ -17,26 +21,43 @@ export class CaseView {
   private readonly summary = h("div", { class: "summary" });
   private readonly status = h("span", { class: "status", role: "status" });
   private readonly saveButton = h("button", { type: "button", id: "save" }, "Save");
-  private readonly startButton = h("button", { type: "button", id: "start", class: "primary" }, "Start");
+  private readonly copyButton = h("button", { type: "button", id: "copy" }, "Copy");
+  private readonly shapeFile = h("input", { type: "file", id: "shape-file", accept: ".stl", class: "unseen", tabindex: -1, "aria-hidden": "true" });
+  private readonly shapeButton = h("button", { type: "button", id: "shape" }, "Shape from a file");
+  private readonly starts = h("span", { class: "starts" });
+  private readonly shapes: ShapePanel;
   private digest = "";
   private saved = "";
   private timer = 0;
   private checking: AbortController | null = null;
   private errors = 0;
+  private judgement: Judgement | null = null;
   /** Changes of the form, one after the other: each works on the text that the last one left. */
   private edits: Promise<void> = Promise.resolve();
 
-  constructor(readonly name: string, schema: SchemaSection[], private readonly started: (run: string) => void) {
+  constructor(readonly name: string, schema: SchemaSection[], private readonly started: (job: string) => void, copied: (name: string) => void) {
+    this.shapes = new ShapePanel(schema, (path, value) => this.change(path, value));
     this.form = new Form(schema, { set: (path, value) => this.change(path, value) });
     this.text.addEventListener("input", () => this.typed());
     this.text.addEventListener("scroll", () => (this.lines.scrollTop = this.text.scrollTop));
     this.saveButton.addEventListener("click", () => void this.save());
-    this.startButton.addEventListener("click", () => void this.start());
+    this.copyButton.addEventListener("click", () => {
+      const copy = prompt("Name of the copy", name.split("/").at(-1)!.replace(/(-(\d+))?\.toml$/, (_all, _dash, n: string | undefined) => `-${Number(n ?? 1) + 1}.toml`));
+      if (copy) this.save().then(() => api.copy(name, copy.endsWith(".toml") ? copy : `${copy}.toml`)).then((made) => copied(made.name), (error: Error) => this.say(error.message));
+    });
+    this.shapeButton.addEventListener("click", () => this.shapeFile.click());
+    this.shapeFile.addEventListener("change", () => {
+      const file = this.shapeFile.files?.[0];
+      if (file) void this.useShape(file);
+      this.shapeFile.value = "";
+    });
     this.element = h("section", { class: "case", "aria-labelledby": "case-name" },
-      h("div", { class: "head" },
-        h("header", { class: "bar" }, h("h1", { id: "case-name" }, name), this.status, this.saveButton, this.startButton), this.problems),
+      this.head = h("div", { class: "head" },
+        h("header", { class: "bar" }, h("h1", { id: "case-name" }, name), this.status, this.shapeButton, this.shapeFile, this.copyButton, this.saveButton, this.starts), this.problems),
       h("div", { class: "sides" }, this.form.element,
-        h("div", { class: "text-side" }, h("div", { class: "editor" }, this.lines, this.text), this.summary)));
+        h("div", { class: "text-side" }, h("div", { class: "editor" }, this.lines, this.text), this.shapes.element, this.summary)));
+    // What stays in sight beside the form begins below the head, which grows with the faults.
+    new ResizeObserver(() => this.element.style.setProperty("--head", `${this.head.offsetHeight}px`)).observe(this.head);
     addEventListener("beforeunload", (event) => {
       if (this.element.isConnected && this.changed) event.preventDefault();
     });
@@ -92,14 +113,19 @@ export class CaseView {
   }
 
   private show(judgement: Judgement): void {
+    this.judgement = judgement;
     this.errors = judgement.problems.filter((p) => p.severity === "error").length;
     this.tellChanged();
-    this.startButton.disabled = this.errors > 0;
+    this.offer(judgement.commands ?? []);
+    this.lock(false);
     this.problems.replaceChildren(...judgement.problems.slice(0, 20).map((p) => this.problem(p)));
     const faulty = new Map(judgement.problems.map((p) => [p.line, p.severity]));
     const count = this.text.value.split("\n").length;
     this.lines.replaceChildren(...[...Array(count).keys()].map((n) => h("span", { class: faulty.get(n + 1) ?? "" }, String(n + 1))));
-    if (judgement.values) this.form.show(judgement.values, judgement.problems);
+    if (judgement.values) {
+      this.form.show(judgement.values, judgement.problems);
+      this.shapes.show(judgement.values, judgement.check?.bodies ?? []);
+    }
     this.summary.classList.toggle("stale", !judgement.check); // until the faults are mended: what it was before
     if (judgement.check) this.summary.replaceChildren(...(judgement.drawing ? [drawingView(judgement.drawing)] : []), ...this.facts(judgement));
   }
@@ -139,6 +165,7 @@ export class CaseView {
 
   async save(): Promise<boolean> {
     try {
+      await this.edits; // what was chosen in the form is in the text when its answer is here
       const text = this.text.value;
       this.digest = (await api.save(this.name, text, this.digest)).digest;
       this.saved = text;
@@ -150,22 +177,45 @@ export class CaseView {
     }
   }
 
-  private async start(): Promise<void> {
-    this.startButton.disabled = true; // one click, one run
+  /** A button for each command that the case has what it takes for. */
+  private offer(commands: Kind[]): void {
+    if (this.starts.dataset["of"] === commands.join()) return;
+    this.starts.dataset["of"] = commands.join();
+    this.starts.replaceChildren(...commands.map((kind, n) => {
+      const b = h("button", { type: "button", class: n === 0 && "primary", "data-start": kind }, START[kind]);
+      b.addEventListener("click", () => void this.start(kind));
+      return b;
+    }));
+  }
+
+  private lock(busy: boolean): void {
+    for (const b of this.starts.querySelectorAll("button")) b.disabled = busy || this.errors > 0;
+  }
+
+  private async start(kind: Kind): Promise<void> {
+    this.lock(true); // one click, one run
     try {
       await this.edits;
       if (this.changed && !(await this.save())) return;
-      this.started((await api.start(this.name)).run);
+      this.started((await api.start(this.name, kind)).job);
     } catch (error) {
       this.say((error as Error).message);
     } finally {
-      this.startButton.disabled = this.errors > 0;
+      this.lock(false);
     }
   }
 
-  /** A shape was dropped: the first body takes it. */
-  async useShape(file: string): Promise<void> {
-    for (const [key, value] of [["shape", "mesh"], ["file", file]] as const) this.change(`body.0.${key}`, JSON.stringify(value));
-    await this.edits;
+  /** A file becomes the shape of the first body. What the checker then finds out of place was of its former shape. */
+  async useShape(file: File): Promise<void> {
+    try {
+      const { name, extent } = await api.upload(file, this.name);
+      for (const [path, value] of this.shapes.take(name, extent)) this.change(path, value);
+      await this.edits;
+      const left = (this.judgement?.problems ?? []).filter((p) => p.severity === "error" && p.key.startsWith("body.0.") && this.judgement?.values?.[p.key]?.given);
+      for (const { key } of left) this.change(key, null);
+      await this.edits;
+    } catch (error) {
+      this.say((error as Error).message);
+    }
   }
 }

@@ -34,9 +34,8 @@ export function drawingView(drawing: Drawing): SVGElement {
     const path = body.path.map(at);
     view.append(svg("polyline", { points: path.map((p) => p.join(",")).join(" "), class: "flight" }, svg("title", {}, `undisturbed path of ${body.name}`)));
     const start = path[0]!;
-    const w = (body.high[0] - body.low[0]) * scale, t = (body.high[1] - body.low[1]) * scale;
-    view.append(svg("rect", { x: start[0] + body.low[0] * scale, y: start[1] - body.high[1] * scale, width: w, height: t, class: "body" },
-      svg("title", {}, body.name)));
+    const outline = body.outline.map(([x, z]) => [start[0] + x * scale, start[1] - z * scale].join(","));
+    view.append(svg("polygon", { points: outline.join(" "), class: "body" }, svg("title", {}, body.name)));
   }
   if (drawing.plate) {
     const [x, y] = at(drawing.plate);

@@ -16,12 +16,15 @@ function split(text: string, units: string[]): [string, string] | null {
   return found && units.includes(found[2]!) ? [found[1]!, found[2]!] : null;
 }
 
+/** A default that no number or text says: "no limit". */
+const IN_WORDS = /^[a-z]/;
+
 /** What the first sections of a sorter are; the rest follows in the order of the schema. */
 const FIRST = ["run", "body", "material", "valve", "launch", "splitter", "jet"];
 
 export class Form {
   readonly element = h("div", { class: "form" });
-  private readonly fields = new Map<string, HTMLElement>();
+  private readonly fields = new Map<string, { field: HTMLElement; key: Key }>();
   private shape = "";
 
   constructor(private readonly schema: SchemaSection[], private readonly events: FormEvents) {}
@@ -33,7 +36,7 @@ export class Form {
       this.shape = shape;
       this.build(counts);
     }
-    for (const [path, field] of this.fields) this.fill(field, values[path]);
+    for (const [path, { field, key }] of this.fields) this.fill(field, key, values[path]);
     this.mark(problems);
   }
 
@@ -73,10 +76,10 @@ export class Form {
     const reset = h("button", { type: "button", class: "reset", title: "Back to the default", "aria-label": `${path} back to the default` }, "\u00d7");
     reset.addEventListener("click", () => this.events.set(path, null));
     const field = h("div", { class: "field" },
-      h("label", { for: id }, key.name), h("div", { class: "control" }, ...this.controls(key, path, id), reset),
+      h("label", { for: id }, ...key.name.split(/(?<=_)/).flatMap((part, n) => (n ? [h("wbr"), part] : [part]))), h("div", { class: "control" }, ...this.controls(key, path, id), reset),
       h("p", { class: "help", id: `${id}-help` }, `${key.help}. Takes ${key.takes}. Default: ${key.default}.`),
       h("p", { class: "fault", hidden: true }));
-    this.fields.set(path, field);
+    this.fields.set(path, { field, key });
     return field;
   }
 
@@ -108,7 +111,7 @@ export class Form {
     return [input, unit];
   }
 
-  private fill(field: HTMLElement, value: Value | undefined): void {
+  private fill(field: HTMLElement, key: Key, value: Value | undefined): void {
     field.classList.toggle("given", value?.given ?? false);
     field.querySelector<HTMLButtonElement>(".reset")!.hidden = !value?.given;
     const text = value?.text ?? "";
@@ -122,12 +125,12 @@ export class Form {
     if (control instanceof HTMLSelectElement) control.value = plain;
     else {
       control.value = value?.given ? plain : "";
-      control.placeholder = plain;
+      control.placeholder = IN_WORDS.test(key.default) ? key.default : plain;
     }
   }
 
   private mark(problems: Problem[]): void {
-    for (const [path, field] of this.fields) {
+    for (const [path, { field }] of this.fields) {
       const mine = problems.find((p) => p.key === path);
       const fault = field.querySelector<HTMLElement>(".fault")!;
       fault.hidden = !mine;

@@ -1,13 +1,19 @@
 import "../style.css";
 import "./workbench.css";
+import { paintSwatches } from "../colour";
 import { h } from "../dom";
-import { api, watchRuns } from "./api";
+import { api, watchFolder, type FolderState } from "./api";
 import { CaseView } from "./case_view";
-import { RunView } from "./run_view";
+import { JobListView } from "./job_list";
+import { JobView } from "./job_view";
 
 function followTheme(): void {
   const dark = matchMedia("(prefers-color-scheme: dark)");
-  const follow = (): void => void (document.documentElement.dataset["theme"] = dark.matches ? "dark" : "light");
+  const follow = (): void => {
+    document.documentElement.dataset["theme"] = dark.matches ? "dark" : "light";
+    paintSwatches();
+    document.dispatchEvent(new Event("themechange"));
+  };
   dark.addEventListener("change", follow);
   follow();
 }
@@ -15,43 +21,64 @@ function followTheme(): void {
 async function start(): Promise<void> {
   const app = document.getElementById("app")!;
   const [schema, { folder, cases }] = await Promise.all([api.schema(), api.cases()]);
-  const runs = new RunView();
   const main = h("main", { id: "content" });
   const list = h("ul", {});
   const note = h("p", { class: "note", role: "status" });
   const lost = h("p", { class: "lost", role: "alert", hidden: true }, "The server does not answer. Runs go on; this page finds them again when it is back.");
+  const trouble = h("p", { class: "lost", role: "alert", hidden: true });
   let view: CaseView | null = null;
+  let job: JobView | null = null;
+  let state: FolderState = { jobs: [], cases, at_once: 1, trouble: "" };
 
-  const leave = (): boolean => !view?.changed || confirm(`${view.name} is not saved. Leave it?`);
-  const showRuns = (): void => {
-    main.replaceChildren(runs.element);
-    mark("");
-  };
-  const showCase = async (name: string): Promise<void> => {
-    view = new CaseView(name, schema, (run) => {
-      showRuns();
-      document.querySelector(`[data-run="${CSS.escape(run)}"]`)?.scrollIntoView();
-    });
-    main.replaceChildren(view.element);
-    mark(name);
-    await view.open();
-  };
   const mark = (name: string): void => {
     for (const b of document.querySelectorAll<HTMLElement>("[data-case]"))
       if (b.dataset["case"] === name) b.setAttribute("aria-current", "page");
       else b.removeAttribute("aria-current");
+  };
+  const leave = (): boolean => !view?.changed || confirm(`${view.name} is not saved. Leave it?`);
+  const swap = (element: HTMLElement, name: string): void => {
+    view = job = null;
+    main.replaceChildren(element);
+    mark(name);
+  };
+  const showJob = (name: string): void => {
+    const shown = new JobView(name, showJobs);
+    swap(shown.element, "");
+    job = shown;
+    update(state);
+  };
+  const jobs = new JobListView(showJob);
+  const showJobs = (): void => swap(jobs.element, "");
+  const showCase = async (name: string): Promise<void> => {
+    const shown = new CaseView(name, schema, showJob, (copy) => {
+      add(copy);
+      void showCase(copy);
+    });
+    swap(shown.element, name);
+    view = shown;
+    await shown.open();
   };
   const entry = (name: string, words: string, act: () => void): HTMLElement => {
     const b = h("button", { type: "button", "data-case": name }, words);
     b.addEventListener("click", act);
     return b;
   };
-  const add = (name: string): void => {
-    list.append(h("li", {}, entry(name, name, () => {
+  const showCases = (names: string[]): void => {
+    list.replaceChildren(...names.map((name) => h("li", {}, entry(name, name, () => {
       if (leave()) showCase(name).catch((error: Error) => (note.textContent = error.message));
-    })));
+    }))));
+    mark(view?.name ?? "");
   };
-  cases.forEach(add);
+  const add = (name: string): void => showCases((state.cases = [...new Set([...state.cases, name])].sort()));
+  const update = (now: FolderState): void => {
+    if (now.cases !== state.cases && now.cases.join("\n") !== [...list.querySelectorAll("[data-case]")].map((b) => b.getAttribute("data-case")).join("\n")) showCases(now.cases);
+    state = now;
+    trouble.hidden = !now.trouble;
+    trouble.textContent = now.trouble;
+    jobs.show(now);
+    job?.show(now.jobs.find((one) => one.name === job!.name));
+  };
+  showCases(cases);
 
   const newName = h("input", { type: "text", id: "new-name", placeholder: "my-rock.toml", autocomplete: "off", "aria-label": "Name of a new case" });
   const create = h("form", { class: "new" }, newName, h("button", { type: "submit" }, "New case"));
@@ -73,18 +100,21 @@ async function start(): Promise<void> {
     const file = event.dataTransfer?.files[0];
     const target = view;
     if (!file || !target?.element.isConnected) return;
-    api.upload(file).then(({ name }) => target.useShape(name)).catch((error: Error) => (note.textContent = error.message));
+    void target.useShape(file);
   });
 
   app.replaceChildren(
     h("a", { class: "skip", href: "#content" }, "Skip to the content"),
     h("div", { class: "desk" },
       h("nav", { class: "side", "aria-label": "Cases and runs" }, h("span", { class: "brand" }, "Ejecta"), h("p", { class: "folder", title: folder }, folder.split("/").at(-1)!),
-        entry("", "Runs", () => leave() && showRuns()), h("h2", {}, "Cases"), list, create, note),
-      h("div", { class: "content" }, lost, main)));
-  watchRuns((states) => runs.show(states), (yes) => (lost.hidden = yes));
-  runs.show(await api.runs());
-  showRuns();
+        entry("", "Runs", () => leave() && showJobs()), h("h2", {}, "Cases"), list, create, note),
+      h("div", { class: "content" }, lost, trouble, main)));
+  showJobs();
+  const first = new Promise<void>((resolve) => watchFolder((now) => {
+    update(now);
+    resolve();
+  }, (yes) => (lost.hidden = yes)));
+  await first;
   document.documentElement.dataset["ready"] = "true";
 }
 
