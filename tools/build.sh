@@ -33,3 +33,4 @@ show_progress() {  # ninja's lines "[3/120] ..." in; everything goes to the log
 echo "building $preset ..."
 : > "$log"
 cmake --build "build/$preset" -j "$(nproc)" "${targets[@]}" 2>&1 | show_progress || { tail -n 60 "$log"; exit 1; }
+grep -A 8 'report page was not built' "$log" || true

@@ -16,11 +16,11 @@
 namespace ejecta {
 namespace {
 
-constexpr double kLook = 1e-3;       ///< s, between two looks at who came, landed, rests
-constexpr double kStill = 2e-3;      ///< m/s: what moves less on the belt, for kStillFor, rests
-constexpr double kStillFor = 20e-3;  ///< s
-constexpr double kRideOver = 1.5;    ///< particles ride this many of the largest radius before the lip
-constexpr double kTrayThick = 10e-3; ///< m
+constexpr double kLook = 1e-3;        ///< s, between two looks at who came, landed, rests
+constexpr double kStill = 2e-3;       ///< m/s: what moves less on the belt, for kStillFor, rests
+constexpr double kStillFor = 20e-3;   ///< s
+constexpr double kRideOver = 1.5;     ///< particles ride this many of the largest radius before the lip
+constexpr double kTrayThick = 10e-3;  ///< m
 /// Sub-steps are this part of the contact time of the size of which only so many are smaller. Longer than a
 /// run's tenth: an impact errs by 2 % of its energy, of which the belt takes nine tenths anyway.
 constexpr double kStepFraction = 0.25, kSmallest = 1e-3;
