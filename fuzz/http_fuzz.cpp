@@ -79,8 +79,10 @@ class Target {
     return send(replaced(replaced(rest, "TOKEN", token_), "PORT", port_), true);
   }
 
-  void look(const std::string& answer) {
-    if (answer.find(kSecret) != std::string::npos) fail("it gave away what lies outside");
+  void look(const std::string& input, const std::string& answer) {
+    // libFuzzer puts what is compared into its inputs, and some answers repeat what was asked.
+    if (answer.find(kSecret) != std::string::npos && input.find(kSecret) == std::string::npos)
+      fail("it gave away what lies outside");
     if (++looks_ % 64 != 0) return;
     std::string alive;
     for (int tries = 0; (alive = ask("G/api/cases")).find(" 200 ") == std::string::npos; ++tries)
@@ -168,6 +170,7 @@ extern "C" const char* __asan_default_options() { return "detect_container_overf
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   static ejecta::Target& target = *new ejecta::Target;
-  target.look(target.ask(std::string(reinterpret_cast<const char*>(data), size)));
+  const std::string input(reinterpret_cast<const char*>(data), size);
+  target.look(input, target.ask(input));
   return 0;
 }

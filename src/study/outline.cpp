@@ -470,6 +470,12 @@ std::vector<Proposal> OutlineFinder::ask(int count) {
       std::for_each(runs_.begin(), runs_.end(), pair);
       std::for_each(pending_.begin(), pending_.end(), pair);
     }
+    const auto once = [&](const auto& run) {  // the same run gives the same margin, however noisy its place
+      if (run.fidelity == Fidelity::fine || two)
+        allowed[static_cast<std::size_t>(option_of(run.at, run.fidelity))] = false;
+    };
+    std::for_each(runs_.begin(), runs_.end(), once);
+    std::for_each(pending_.begin(), pending_.end(), once);
     Eigen::Index best = -1;
     double most = -1.0;
     for (Eigen::Index n = 0; n < options.size(); ++n) {

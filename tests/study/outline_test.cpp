@@ -7,7 +7,9 @@
 #include <cstdlib>
 #include <numbers>
 #include <numeric>
+#include <set>
 #include <string>
+#include <tuple>
 
 #include "base/error.hpp"
 #include "base/parallel.hpp"
@@ -85,6 +87,25 @@ std::vector<Kind> kinds() {
        },
        0.0},
   };
+}
+
+/// A run is asked for once, however little the margins around it say of its own: it would only give the same.
+TEST(Outline, AsksForNoRunTwice) {
+  const Margin wild = [](double x, double y) { return 8.0 * noise(x, y); };
+  for (const bool two : {false, true}) {
+    MapSettings s = half_plane();
+    s.window = {-0.015, 0.010, -0.009, 0.009};
+    s.coarse_cost = two ? 0.1 : 0.0;
+    s.max_runs = 60;
+    OutlineFinder finder(s);
+    std::set<std::tuple<double, double, Fidelity>> asked;
+    for (auto places = finder.ask(4); !places.empty(); places = finder.ask(4))
+      for (const Proposal& p : places) {
+        EXPECT_TRUE(asked.insert({p.at.x, p.at.y, p.fidelity}).second) << p.at.x << " " << p.at.y;
+        finder.tell({p.at, wild(p.at.x, p.at.y + (p.fidelity == Fidelity::fine ? 0.0 : 1.0)), p.fidelity});
+      }
+    EXPECT_GE(asked.size(), 40u);
+  }
 }
 
 /// 1 mm of noise on a margin of slope 1 moves the edge by 1 mm, and 35 runs then leave 2 to 3.5 % of this
