@@ -59,12 +59,21 @@ export interface SliceFrame {
   pixels: Uint8Array;
 }
 
+/** Grains among the bodies: every so-manieth is shown. */
+export interface GrainCloud {
+  count: number;
+  shown: number;
+  diameter: number;
+}
+
 export interface Frame {
   time: number;
   /** By body; undefined before it has come and after it has gone. */
   poses: (Pose | undefined)[];
   /** By raster; missing where no air is computed. */
   slices: Map<number, SliceFrame>;
+  /** x y z of each grain shown, one after the other; NaN: not there. */
+  grains?: Float32Array;
 }
 
 export interface Replay {
@@ -73,6 +82,7 @@ export interface Replay {
   bodies: Surface[];
   plates: Plate[];
   nozzles: Nozzle[];
+  grains?: GrainCloud;
   undisturbed: Vec3[][];
   valveOpen: [number, number][];
   frames: Frame[];
@@ -129,6 +139,7 @@ export interface RawFrame {
   time: number;
   bodies: (number[] | null)[];
   slices: { raster: number; full_scale: number; data: string }[];
+  grains?: { lower: Vec3; upper: Vec3; at: string };
 }
 
 interface RawRun extends Omit<Run, "caseText" | "history" | "replay" | "figures" | "pictures"> {
@@ -136,6 +147,12 @@ interface RawRun extends Omit<Run, "caseText" | "history" | "replay" | "figures"
   case: string;
   history: { [name: string]: { columns: Column[]; data: string[] } };
   replay: [] | [RawHeader, ...RawFrame[]];
+}
+
+function readGrains({ lower, upper, at }: NonNullable<RawFrame["grains"]>): Float32Array {
+  const parts = new Uint16Array(bytesOf(at).buffer);
+  return Float32Array.from(parts, (part, n) =>
+    part === 65535 ? NaN : lower[n % 3]! + (part / 65534) * (upper[n % 3]! - lower[n % 3]!));
 }
 
 /** A line of replay.jsonl but the first. */
@@ -146,7 +163,7 @@ export async function readFrame(line: RawFrame): Promise<Frame> {
   const poses = line.bodies.map((b): Pose | undefined => b
     ? { position: b.slice(0, 3) as Vec3, orientation: b.slice(3, 7) as Quat }
     : undefined);
-  return { time: line.time, poses, slices };
+  return { time: line.time, poses, slices, ...(line.grains ? { grains: readGrains(line.grains) } : {}) };
 }
 
 /** The first line of replay.jsonl; frames come later. */
@@ -161,6 +178,7 @@ export function readHeader(h: RawHeader): Replay {
     })),
     plates: h.plates,
     nozzles: h.nozzles,
+    ...(h.grains ? { grains: h.grains } : {}),
     undisturbed: h.undisturbed,
     valveOpen: h.valve_open,
     frames: [],

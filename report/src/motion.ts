@@ -30,6 +30,20 @@ export function poseAt(replay: Replay, b: number, time: number): Pose | undefine
   };
 }
 
+/** Places of the grains shown, between frames, into `out`; far away where one is not there. */
+export function grainsAt(replay: Replay, time: number, out: Float32Array): void {
+  const n = frameIndex(replay.frames, time);
+  const from = replay.frames[n];
+  const to = replay.frames[n + 1] ?? from;
+  if (!from?.grains || !to?.grains) return void out.fill(1e6);
+  const s = to === from ? 0 : Math.min(Math.max((time - from.time) / (to.time - from.time), 0), 1);
+  for (let k = 0; k < out.length; ++k) {
+    const [p, q] = [from.grains[k]!, to.grains[k]!];
+    const at = Number.isNaN(q) ? p : (1 - s) * p + s * q;
+    out[k] = Number.isNaN(at) ? 1e6 : at;
+  }
+}
+
 /** Speed of body `b` between the frames around `time`, m/s; undefined where it is not there. */
 export function speedAt(replay: Replay, b: number, time: number): number | undefined {
   const n = Math.min(frameIndex(replay.frames, time), replay.frames.length - 2);

@@ -1,14 +1,14 @@
 import {
   AmbientLight, Box3, BoxGeometry, BufferAttribute, BufferGeometry, CanvasTexture, Color, CylinderGeometry,
   DirectionalLight, DoubleSide, EdgesGeometry, Line, LineBasicMaterial, LineDashedMaterial, LineSegments, Matrix4,
-  Mesh, MeshBasicMaterial, MeshStandardMaterial, PerspectiveCamera, PlaneGeometry, Quaternion, Scene,
+  Mesh, MeshBasicMaterial, MeshStandardMaterial, PerspectiveCamera, PlaneGeometry, Points, PointsMaterial, Quaternion, Scene,
   SRGBColorSpace, Vector3, WebGLRenderer,
 } from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 import { BODY_COLOURS, bodyColour, viridis } from "./colour";
-import { CROWD, columnOf, hasBox, type Plate, type Raster, type Replay, type Run, type Vec3 } from "./data";
+import { CROWD, columnOf, hasBox, type GrainCloud, type Plate, type Raster, type Replay, type Run, type Vec3 } from "./data";
 import { h } from "./dom";
-import { fastestBody, poseAt, radius, speedAt } from "./motion";
+import { fastestBody, grainsAt, poseAt, radius, speedAt } from "./motion";
 import type { Player } from "./player";
 import { AirImage, fastestAir, speedBar } from "./slice";
 
@@ -74,6 +74,7 @@ export class SceneView {
   private readonly renderer: WebGLRenderer;
   private readonly controls: OrbitControls;
   private readonly bodies: { run: Run; body: number; mesh: Mesh; look: MeshStandardMaterial; own: Color }[] = [];
+  private readonly grains: { replay: Replay; points: Points }[] = [];
   private air: { image: AirImage; texture: CanvasTexture; mesh: Mesh }[] = [];
   private readonly flight = new Box3();
   private readonly domain = new Box3();
@@ -114,6 +115,7 @@ export class SceneView {
       }
       for (const nozzle of replay.nozzles) this.scene.add(this.nozzleMesh(nozzle.position, nozzle.direction, nozzle.diameter));
     }
+    if (replay.grains) this.grains.push({ replay, points: this.grainPoints(replay.grains) });
     replay.bodies.forEach((surface, body) => {
       const colour = bodyColour(body, true);
       const geometry = new BufferGeometry();
@@ -133,6 +135,15 @@ export class SceneView {
       const free = (replay.undisturbed[body] ?? []).map(vector);
       if (free.length > 1) this.scene.add(pathLine(free, colour, true));
     });
+  }
+
+  /** Drawn a little larger than they are: dust of 0.1 mm would not be seen. */
+  private grainPoints({ shown, diameter }: GrainCloud): Points {
+    const geometry = new BufferGeometry().setAttribute("position", new BufferAttribute(new Float32Array(3 * shown), 3));
+    const points = new Points(geometry, new PointsMaterial({ color: 0xe0a95c, size: Math.max(2 * diameter, 0.0006) }));
+    points.frustumCulled = false;
+    this.scene.add(points);
+    return points;
   }
 
   /** The box of the air with its edges, or that around all bodies; its size. */
@@ -216,6 +227,14 @@ export class SceneView {
     this.request();
   }
 
+  private moveGrains(): void {
+    for (const { replay, points } of this.grains) {
+      const position = points.geometry.getAttribute("position") as BufferAttribute;
+      grainsAt(replay, this.player.time, position.array as Float32Array);
+      position.needsUpdate = true;
+    }
+  }
+
   private moveBodies(): void {
     for (const { run, body, mesh, look, own } of this.bodies) {
       const pose = poseAt(run.replay!, body, this.player.time);
@@ -251,6 +270,7 @@ export class SceneView {
     this.camera.updateProjectionMatrix();
     if (!this.placed) this.look("jet");
     this.moveBodies();
+    this.moveGrains();
     if (this.followed) {
       const step = this.followed.position.clone().sub(this.lastSeen);
       this.lastSeen.add(step);

@@ -2,7 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <array>
+#include <cmath>
 #include <iterator>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "base/error.hpp"
@@ -49,6 +52,8 @@ std::string header_line(const ReplayHeader& h) {
   for (const NozzleGeometry& n : h.nozzles)
     json["nozzles"].push_back(
         {{"position", to_json(n.position)}, {"direction", to_json(n.direction)}, {"diameter", n.diameter}});
+  if (h.grains.shown > 0)
+    json["grains"] = {{"count", h.grains.count}, {"shown", h.grains.shown}, {"diameter", h.grains.diameter}};
   json["undisturbed"] = ordered_json::array();
   for (const auto& line : h.undisturbed) {
     ordered_json points = ordered_json::array();
@@ -57,6 +62,27 @@ std::string header_line(const ReplayHeader& h) {
   }
   json["valve_open"] = h.valve_open;
   return json.dump() + '\n';
+}
+
+/// {"lower": ..., "upper": ..., "at": ...}: places in the box around them all, in parts of 65534; 65535: not
+/// there.
+std::string grains_text(const std::vector<Vec3>& grains) {
+  Vec3 low = Vec3::Constant(std::numeric_limits<double>::infinity()), high = -low;
+  for (const Vec3& g : grains)
+    if (g.allFinite()) low = low.cwiseMin(g), high = high.cwiseMax(g);
+  if (!low.allFinite()) low = high = Vec3::Zero();
+  const Vec3 size = (high - low).cwiseMax(1e-9);
+  std::vector<std::array<std::uint16_t, 3>> at;
+  for (const Vec3& g : grains) {
+    at.push_back({65535, 65535, 65535});
+    if (!g.allFinite()) continue;
+    for (std::size_t d = 0; d < 3; ++d) {
+      const auto c = static_cast<Eigen::Index>(d);
+      at.back()[d] = static_cast<std::uint16_t>(std::lround(65534 * (g[c] - low[c]) / size[c]));
+    }
+  }
+  const Vec3 top = low + size;
+  return ordered_json{{"lower", to_json(low)}, {"upper", to_json(top)}, {"at", base64(at)}}.dump();
 }
 
 /// Time of a frame line, which starts with {"time":...,
@@ -108,7 +134,9 @@ void ReplayFile::add(const ReplayFrame& frame) {
     append_base64(line_, packed_.data(), packed_.size());
     line_ += "\"}";
   }
-  line_ += "]}\n";
+  line_ += "]";
+  if (!frame.grains.empty()) line_ += ",\"grains\":" + grains_text(frame.grains);
+  line_ += "}\n";
   file_.append(line_);
 }
 

@@ -64,6 +64,13 @@ struct NozzleGeometry {
   double diameter = 0.0;    ///< m
 };
 
+/// Grains among the bodies: too many to be drawn all.
+struct GrainCloud {
+  std::size_t count = 0;  ///< of all
+  std::size_t shown = 0;  ///< every so-manieth of them
+  double diameter = 0.0;  ///< m, of the middle one
+};
+
 /// What stays the same during a replay. First line of replay.jsonl.
 struct ReplayHeader {
   std::array<Vec3, 2> domain{Vec3::Zero(), Vec3::Zero()};  ///< m, box in which the air is computed
@@ -71,6 +78,7 @@ struct ReplayHeader {
   std::vector<BodySurface> bodies;
   std::vector<PlateGeometry> plates;
   std::vector<NozzleGeometry> nozzles;
+  GrainCloud grains;
   /// Centre of each body without any air, one polyline a body (may be empty), m
   std::vector<std::vector<Vec3>> undisturbed;
   /// Openings of the valves, s: start of the command, end of the command
@@ -82,6 +90,7 @@ struct ReplayFrame {
   double time = 0.0;  ///< s
   std::vector<BodyPose> bodies;
   std::vector<SliceFrame> slices;
+  std::vector<Vec3> grains{};  ///< m, those shown; not finite: not there
 };
 
 /// Something the run takes for granted that the user should know: result.json key "assumptions".

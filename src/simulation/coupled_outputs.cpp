@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 
 #include "base/state_reader.hpp"
 #include "output/vtk_grains.hpp"
@@ -245,6 +246,14 @@ void CoupledOutputs::write_replay(double time) {
       samplers_[r].sample(u[0], u[1], u[2], slice);
       frame.slices.push_back(std::move(slice));
     }
+  const std::size_t grains = model_.particles().bodies().size() - model_.first_grain(),
+                    shown = std::min(grains, kGrainsShown);
+  for (std::size_t n = 0; n < shown; ++n) {
+    const std::size_t g = model_.first_grain() + n * grains / shown;
+    const bool here = model_.particles().presence(static_cast<int>(g)) == Presence::here;
+    frame.grains.push_back(here ? model_.particles().bodies()[g].position
+                                : Vec3::Constant(std::numeric_limits<double>::quiet_NaN()));
+  }
   replay_->add(frame);
 }
 

@@ -83,6 +83,15 @@ output::ReplayHeader replay_header(const Case& c, const CoupledModel& model) {
     h.valve_open.push_back({c.valve.opens_at, c.valve.opens_at + c.valve.duration});
     for (double t : c.valve.more_pulses) h.valve_open.push_back({t, t + c.valve.duration});
   }
+  if (const std::size_t count = model.particles().bodies().size() - model.first_grain(); count > 0) {
+    h.grains = {count, std::min(count, kGrainsShown), 0.0};
+    std::vector<double> diameters;
+    for (const Body& g : model.particles().bodies().subspan(model.first_grain()))
+      diameters.push_back(2 * g.shape.bounding_radius());
+    const auto middle = diameters.begin() + static_cast<std::ptrdiff_t>(count / 2);
+    std::nth_element(diameters.begin(), middle, diameters.end());
+    h.grains.diameter = *middle;
+  }
   h.undisturbed = model.undisturbed();
   return h;
 }
