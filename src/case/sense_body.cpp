@@ -153,6 +153,22 @@ void sense_shapes(const Case& c, Findings& found) {
       found.error(key + (b.copies > 1 ? ".copies" : ".enters_at"),
                   "bodies can only enter where nothing flows",
                   "flow.solver = \"none\", or bodies that are there from the start", "solver = \"none\"");
+    const std::vector<double>* sides[] = {&c.domain.x, &c.domain.y, &c.domain.z};
+    for (int d = 0; d < 3 && !b.on_belt && b.motion != Motion::fixed; ++d) {
+      const std::string axis(1, "xyz"[d]);
+      if (sides[d]->size() != 2 || std::count(c.domain.periodic.begin(), c.domain.periodic.end(), axis))
+        continue;
+      if (b.position[d] >= sides[d]->front() && b.position[d] < sides[d]->back()) continue;
+      found.error(
+          key + ".position",
+          fmt::format("the body starts outside of the domain, whose {} goes from {:.4g} to {:.4g} mm: it "
+                      "would be taken away at once",
+                      axis, 1e3 * sides[d]->front(), 1e3 * sides[d]->back()),
+          "a place within domain." + axis);
+    }
+    if (b.enters_at.value_or(0.0) >= c.run.end_time)
+      found.warning(key + ".enters_at", "the body never comes in: the run ends before",
+                    "a time before run.end_time", "enters_at = \"0 ms\"");
     if (b.release_at > c.run.end_time)
       found.warning(key + ".release_at", "the body is never released: the run ends before",
                     "a time before run.end_time");
@@ -191,6 +207,17 @@ void sense_walls(const Case& c, Findings& found) {
       found.error(key + ".normal", "a wall without direction", "a list of 3 numbers, not all 0",
                   "normal = [0, 0, 1]");
     if (w.kind == WallKind::mesh) require_file(c, key + ".file", w.file, "mesh", found);
+    const Vec3 normal = w.normal.normalized(), across = w.velocity.dot(normal) * normal;
+    if (w.kind != WallKind::mesh && w.kind != WallKind::box && across.norm() > kLevel * w.velocity.norm()) {
+      const Vec3 along = w.velocity - across;
+      found.error(key + ".velocity",
+                  fmt::format("the surface would move by {:.4g} m/s across itself: a wall stays where it is, "
+                              "its surface runs along it",
+                              across.norm()),
+                  "a velocity along the wall; what comes nearer is a body with motion = \"prescribed\"",
+                  fmt::format("velocity = [\"{:.4g} m/s\", \"{:.4g} m/s\", \"{:.4g} m/s\"]", along.x() + 0.0,
+                              along.y() + 0.0, along.z() + 0.0));
+    }
     const bool endless = w.kind == WallKind::belt && w.size.isZero();
     if (w.kind == WallKind::plane || endless) require_images(c, w, key, found);
     const int flat = w.kind == WallKind::box                                               ? 3

@@ -140,6 +140,78 @@ void check_patch(const PatchSpec& patch, const Box& box, std::size_t f, const st
                 "a list of 3 velocities or formulas", "velocity = [\"0 m/s\", \"0 m/s\", \"200 m/s\"]");
 }
 
+bool is_open(BoundaryType t) {
+  return t == BoundaryType::pressure_outlet || t == BoundaryType::wave_transmissive ||
+         t == BoundaryType::free_stream || t == BoundaryType::total_pressure;
+}
+
+/// A face of the box: places all over it, each for the same share of its area (of one radian of it around an
+/// axis).
+struct FacePlaces {
+  std::vector<Vec3> at;
+  double share = 0.0;  ///< m2
+};
+
+FacePlaces places_on(const Case& c, const Box& box, std::size_t f) {
+  constexpr int kAlong = 40;
+  const int a = static_cast<int>(f / 2), b = (a + 1) % 3, d = (a + 2) % 3;
+  const bool round = c.grid.geometry == Geometry::axisymmetric;
+  const Vec3 size = box.high - box.low;
+  FacePlaces face;
+  double area = round ? 1.0 : size[b] * size[d];
+  if (round)
+    area = a == 2 ? 0.5 * (std::pow(box.high.x(), 2) - std::pow(box.low.x(), 2)) : box.high.x() * size.z();
+  face.share = area / (kAlong * kAlong);
+  for (int i = 0; i < kAlong; ++i)
+    for (int j = 0; j < kAlong; ++j) {
+      Vec3 x;
+      x[a] = f % 2 ? box.high[a] : box.low[a];
+      x[b] = box.low[b] + (i + 0.5) / kAlong * size[b];
+      x[d] = box.low[d] + (j + 0.5) / kAlong * size[d];
+      if (round && a == 2)  // equal areas of rings
+        x.x() = std::sqrt(std::pow(box.low.x(), 2) + (i + 0.5) / kAlong * 2.0 * area);
+      face.at.push_back(x);
+    }
+  return face;
+}
+
+/// What comes in through faces with a velocity leaves through others, or there is an open one: a liquid, and
+/// air that is as good as one, cannot be squeezed.
+void check_way_out(const Case& c, const Box& box, Findings& found) {
+  constexpr double kOff = 0.02;  // of all that flows: places are places, not integrals
+  if (!is_incompressible(c)) return;
+  double net = 0.0, all = 0.0;
+  std::string inflow;
+  for (std::size_t f = 0; f < 6; ++f) {
+    const BoundarySpec& face = c.boundary[f];
+    const int a = static_cast<int>(f / 2);
+    if (c.grid.geometry == Geometry::axisymmetric && (a == 1 || (f == 0 && box.low.x() == 0.0))) continue;
+    const FacePlaces places = places_on(c, box, f);
+    double through = 0.0;
+    for (const Vec3& x : places.at) {
+      BoundaryType type = face.type;
+      const StateSpec* state = &face.state;
+      for (const PatchSpec& p : face.patches)
+        if ((x - p.centre).norm() <= p.radius) type = p.type, state = &p.state;
+      if (is_open(type)) return;
+      if (type == BoundaryType::jet) through = -1.0;  // inwards, however much
+      if ((type == BoundaryType::velocity || type == BoundaryType::moving_wall) && state->velocity)
+        through += (f % 2 ? 1.0 : -1.0) * places.share *
+                   Expression((*state->velocity)[static_cast<std::size_t>(a)])(x.x(), x.y(), x.z(), 0.0);
+    }
+    net += through;
+    all += std::abs(through);
+    if (through < 0.0 && inflow.empty()) inflow = std::string("boundary.") + face_names[f];
+  }
+  if (!(std::abs(net) > kOff * all)) return;
+  found.error(
+      inflow.empty() ? "boundary" : inflow + ".type",
+      fmt::format("what {} has no way {}: no face is open", net < 0.0 ? "comes in" : "goes out",
+                  net < 0.0 ? "out" : "in"),
+      "a face of type \"pressure-outlet\" or \"free-stream\", or velocities of all faces that balance",
+      "[boundary.x_max] type = \"pressure-outlet\"");
+}
+
 }  // namespace
 
 void sense_boundaries(const Case& c, Findings& found) {
@@ -158,6 +230,7 @@ void sense_boundaries(const Case& c, Findings& found) {
     for (std::size_t n = 0; n < c.boundary[f].patches.size() && box; ++n)
       check_patch(c.boundary[f].patches[n], *box, f, fmt::format("{}.patch.{}", key, n), found);
   }
+  if (box && found.list.empty()) check_way_out(c, *box, found);
 }
 
 }  // namespace ejecta

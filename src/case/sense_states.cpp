@@ -25,6 +25,7 @@ using Inside = std::function<bool(const Vec3&)>;
 /// What a formula or number may be at the start.
 struct Allowed {
   bool zero = true;
+  bool negative = false;
   std::string expected, example;
 };
 
@@ -33,7 +34,7 @@ void check_formula(const std::string& key, const std::optional<std::string>& tex
   if (!text) return;
   const Expression formula(*text);
   const auto good = [&](double value) {
-    return std::isfinite(value) && (allowed.zero ? value >= 0.0 : value > 0.0);
+    return std::isfinite(value) && (allowed.negative || (allowed.zero ? value >= 0.0 : value > 0.0));
   };
   const auto words = [](double value) {
     return std::isnan(value) ? "no number" : fmt::format("{:.4g}", value);
@@ -59,19 +60,29 @@ void check_formula(const std::string& key, const std::optional<std::string>& tex
 
 void check_state(const Case& c, const std::string& key, const StateSpec& state, const Points& at,
                  const Inside& inside, Findings& found) {
+  if (state.velocity)
+    for (const std::string& component : *state.velocity)
+      check_formula(key + ".velocity", component, at, inside,
+                    {true, true, "a number everywhere; max(0, ...) keeps a root or logarithm in its range",
+                     "velocity = [\"= 10 * sqrt(max(0, 1 - (y/0.02)^2))\", \"0\", \"0\"]"},
+                    found);
+  if (c.flow.solver == FlowSolver::incompressible)
+    check_formula(key + ".pressure", state.pressure, at, inside,
+                  {true, true, "a number everywhere", "pressure = \"0 Pa gauge\""}, found);
   if (c.flow.turbulence != TurbulenceModel::laminar) {
-    const Allowed eddies{true, "nothing below 0 there; max(0, ...) cuts it off",
+    const Allowed eddies{true, false, "nothing below 0 there; max(0, ...) cuts it off",
                          "k = \"= max(0, 0.1 * (1 - (x/0.02)^2))\""};
     check_formula(key + ".k", state.k, at, inside, eddies, found);
     check_formula(key + ".epsilon", state.epsilon, at, inside, eddies, found);
   }
   if (c.flow.solver == FlowSolver::incompressible) return;
   check_formula(key + ".pressure", state.pressure, at, inside,
-                {false, "a gas has a pressure above 0, absolute", "pressure = \"1 bar absolute\""}, found);
+                {false, false, "a gas has a pressure above 0, absolute", "pressure = \"1 bar absolute\""},
+                found);
   check_formula(key + ".density", state.density, at, inside,
-                {false, "a gas has a density above 0", "density = \"1.2 kg/m3\""}, found);
+                {false, false, "a gas has a density above 0", "density = \"1.2 kg/m3\""}, found);
   check_formula(key + ".temperature", state.temperature, at, inside,
-                {false, "a gas has a temperature above 0 K", "temperature = \"300 K\""}, found);
+                {false, false, "a gas has a temperature above 0 K", "temperature = \"300 K\""}, found);
 }
 
 /// A number, or `otherwise` where none is given or a formula stands.

@@ -315,6 +315,32 @@ void Particles::restore(std::span<const double> s) {
   relist_ = true;
 }
 
+namespace {
+
+/// Shifts by whole periods that bring a wall, or what of it reaches over a periodic side, into the domain:
+/// what lies outside of that meets nobody. A floor from one side to the other is there already.
+std::vector<Vec3> wall_images(const Wall& wall, const Domain& domain) {
+  std::vector<Vec3> shifts{Vec3::Zero()};
+  if (wall.is_plane) return {};
+  Vec3 low = wall.surface->triangles().front().corners[0], high = low;
+  for (const Surface::Triangle& t : wall.surface->triangles())
+    for (const Vec3& corner : t.corners) low = low.cwiseMin(corner), high = high.cwiseMax(corner);
+  for (int c = 0; c < 3; ++c) {
+    const double period = domain.period[c], slack = 1e-9 * period;
+    if (!(period > 0) || (low[c] <= domain.low[c] + slack && high[c] >= domain.high[c] - slack)) continue;
+    const double first = std::floor((domain.low[c] + slack - high[c]) / period) + 1,
+                 last = std::ceil((domain.high[c] - slack - low[c]) / period) - 1;
+    std::vector<Vec3> all;
+    for (const Vec3& s : shifts)
+      for (double k = first; k <= last; ++k) all.push_back(s + k * period * Vec3::Unit(c));
+    shifts = std::move(all);
+  }
+  std::erase_if(shifts, [](const Vec3& s) { return s.isZero(); });
+  return shifts;
+}
+
+}  // namespace
+
 Particles make_particles(const Case& config) {
   const std::string directory = folder_of(config);
   const ContactSpec& contact = config.contact;
@@ -350,6 +376,13 @@ Particles make_particles(const Case& config) {
     particles.add(std::move(body));
   }
   for (const WallSpec& spec : config.walls) particles.add(make_wall(spec, particles.materials(), directory));
+  for (std::size_t n = 0; n < config.walls.size();
+       ++n)  // after them all, which stand in the order of the case
+    for (const Vec3& shift : wall_images(particles.walls()[n], domain)) {
+      WallSpec image = config.walls[n];
+      image.point += shift;
+      particles.add(make_wall(image, particles.materials(), directory));
+    }
   const bool placed =
       std::none_of(config.bodies.begin(), config.bodies.end(), [](const auto& b) { return b.on_belt; });
   if (placed) particles.require_apart();

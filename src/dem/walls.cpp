@@ -2,8 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
+#include <map>
+#include <utility>
+#include <vector>
 
 #include "base/error.hpp"
 #include "shape/convex_parts.hpp"
@@ -43,6 +48,30 @@ void require_area(const TriangleMesh& mesh, const std::string& name) {
   }
 }
 
+/// Two triangles that run the same way along the edge they share look to different sides: one of them is a
+/// hole to what comes from there.
+void require_one_side(const TriangleMesh& mesh, const std::string& name) {
+  std::map<std::pair<int, int>, std::vector<std::size_t>> edges;  // from, to -> triangles
+  for (std::size_t n = 0; n < mesh.triangles.size(); ++n)
+    for (std::size_t c = 0; c < 3; ++c)
+      edges[{mesh.triangles[n][c], mesh.triangles[n][(c + 1) % 3]}].push_back(n);
+  const auto corners = [&](std::size_t n) {
+    std::array<int, 3> sorted = mesh.triangles[n];
+    std::sort(sorted.begin(), sorted.end());
+    return sorted;
+  };
+  for (const auto& [edge, along] : edges)
+    if (along.size() == 2 && !edges.contains({edge.second, edge.first}) &&
+        corners(along[0]) != corners(along[1]))
+      throw InputError(
+          fmt::format("{}: triangles {} and {} run the same way along the edge they share: one of "
+                      "them is inside out, a hole to what comes from there",
+                      name, along[0] + 1, along[1] + 1),
+          {.key = "file",
+           .expected = "triangles that all look to one side, or both sides of an open surface",
+           .example = "two_sided = true"});
+}
+
 Mat3 turn_of(const WallSpec& spec) {
   return Eigen::AngleAxisd(spec.rotation_angle, spec.rotation_axis.normalized()).toRotationMatrix();
 }
@@ -74,6 +103,7 @@ Wall make_wall(const WallSpec& spec, const Materials& materials, const std::stri
       const std::string path = (std::filesystem::path(directory) / spec.file).string();
       const TriangleMesh mesh = placed(read_stl(path, spec.scale), spec);
       require_area(mesh, path);
+      if (!spec.two_sided) require_one_side(mesh, path);
       wall.surface = std::make_shared<Surface>(mesh, spec.two_sided);
       if (const double volume = mass_mesh(mesh).volume; wall.surface->closed() && volume > 0) {
         wall.solids = convex_pieces(mesh);

@@ -91,19 +91,29 @@ std::string of_several(const std::vector<const ordered_json*>& judged, const ord
 /// "300 bodies followed for 3000 ms; at the end the fastest moves at 0.02 m/s"
 std::string of_bodies_alone(const ordered_json& result) {
   const ordered_json& bodies = result["bodies"];
+  std::map<std::string, std::vector<std::string>> absent;  // by why
+  for (const ordered_json& body : bodies)
+    if (body.contains("presence")) absent[body["presence"]].push_back(body.value("name", "?"));
+  std::string away;
+  for (const auto& [why, names] : absent) away += fmt::format("; {}: {}", why, some_of(names));
   double fastest = 0.0;
+  std::size_t here = 0;
   for (const ordered_json& body : bodies) {
+    if (body.contains("presence")) continue;
+    ++here;
     const auto v = body["final_velocity_m_s"].get<std::array<double, 3>>();
     fastest = std::max(fastest, std::hypot(v[0], v[1], v[2]));
   }
   const std::string names =
       bodies.size() == 1 ? bodies[0].value("name", "The body") : fmt::format("{} bodies", bodies.size());
   const std::string end =
-      fastest < 1e-3 ? "at rest at the end (below 1 mm/s)"
-                     : fmt::format("{} {:.3g} m/s at the end",
-                                   bodies.size() == 1 ? "moving at" : "the fastest moving at", fastest);
-  return fmt::format("{} followed for {:.4g} ms, {}.", names, 1e3 * result["simulated_time_s"].get<double>(),
-                     end);
+      here == 0        ? "none of them there at the end"
+      : fastest < 1e-3 ? "at rest at the end (below 1 mm/s)"
+                       : fmt::format("{} {:.3g} m/s at the end",
+                                     bodies.size() == 1 ? "moving at" : "the fastest moving at", fastest);
+  return fmt::format("{} followed for {:.4g} ms, {}{}.", names,
+                     1e3 * result["simulated_time_s"].get<double>(),
+                     here == 0 && bodies.size() == 1 ? "not there at the end" : end, away);
 }
 
 }  // namespace

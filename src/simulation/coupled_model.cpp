@@ -18,6 +18,9 @@
 namespace ejecta {
 namespace {
 
+constexpr double kRestSpeed = 1e-4;  // m/s, of any point of a body at rest
+constexpr double kUnborne = 0.5;     // of the weight of one at rest, that nothing bears
+
 /// A case without a fluid has no grid; one cell stands for it.
 Grid grid_or_cell(const Case& c) {
   if (c.flow.solver != FlowSolver::none) return make_grid(c);
@@ -62,7 +65,7 @@ CoupledModel::CoupledModel(const Case& c, Inflow inflow)
   friction_sum_.assign(n, Vec3::Zero());
   torque_sum_.assign(n, Vec3::Zero());
   before_.resize(n);
-  peak_speed_.assign(n, 0.0);
+  for (const Body& b : lumps()) peak_speed_.push_back(b.velocity.norm());
   if (flow_ && n > 0) coupling_.emplace(grid_, coupling_setup());
   if (flow_ && any_grains()) grains_.emplace(case_, grid_, flow_->density(), n);
   sorted_grains_.resize(case_.grains.size());
@@ -324,10 +327,18 @@ bool CoupledModel::finished() const {
   const auto bodies = particles_.bodies();
   for (std::size_t n = 0; n < bodies.size(); ++n)
     if (particles_.presence(static_cast<int>(n)) == Presence::waiting) return false;
-  return std::all_of(bodies.begin(), bodies.end(), [&](const Body& b) {
-    return particles_.presence(static_cast<int>(&b - bodies.data())) == Presence::gone ||
-           b.velocity.norm() + b.angular_velocity.norm() * b.shape.bounding_radius() < 1e-4;
-  });
+  const double g = case_.environment.gravity.norm();
+  for (std::size_t n = 0; n < bodies.size(); ++n) {
+    const Body& b = bodies[n];
+    const int index = static_cast<int>(n);
+    if (particles_.presence(index) == Presence::gone || b.motion == Motion::fixed) continue;
+    if (b.release_at > particles_.time()) return false;
+    if (b.velocity.norm() + b.angular_velocity.norm() * b.shape.bounding_radius() > kRestSpeed) return false;
+    // Nothing is at rest where it hangs in the air for a moment: something must bear its weight.
+    const Vec3 borne = (particles_.contact_force(index) + loads_[n].force) / b.mass;
+    if (b.motion == Motion::free && (case_.environment.gravity + borne).norm() > kUnborne * g) return false;
+  }
+  return true;
 }
 
 Vec3 CoupledModel::mean_force(std::size_t b) const {

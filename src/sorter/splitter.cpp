@@ -37,18 +37,20 @@ void Splitter::watch(std::span<const Body> bodies, std::span<const Vec3> before,
     const double gap = edge_.x() - to.x(), reach = 2.0 * body.shape.bounding_radius();
     if (const Vec3& v = body.velocity; gap > reach && v.x() > 0.0) {
       const double t = gap / v.x();
-      approach_[b] = {v.x(), to.z() + v.z() * t + 0.5 * gravity_z_ * t * t - edge_.z()};
+      approach_[b] = {v.x(), to.z() + v.z() * t + 0.5 * gravity_z_ * t * t - edge_.z(), approach_[b].near};
     }
     const bool passed = gap <= 0.0;
-    const bool thrown_back = gap <= reach && body.velocity.x() <= 0.0 && to.z() < edge_.z();
+    approach_[b].near = approach_[b].near || gap <= reach;
+    const bool thrown_back = approach_[b].near && body.velocity.x() <= 0.0 && to.z() < edge_.z();
     if (!passed && !thrown_back) continue;
     const double share = passed ? (edge_.x() - from.x()) / (to.x() - from.x()) : 1.0;
     Verdict v;
-    v.clearance = passed ? from.z() + share * (to.z() - from.z()) - edge_.z() : approach_[b].clearance;
+    v.clearance = passed ? from.z() + share * (to.z() - from.z()) - edge_.z()
+                         : std::min(approach_[b].clearance, to.z() - edge_.z());
     v.ejected = passed && v.clearance > 0.0;
     v.time = time - (1.0 - share) * dt;
     const Approach free =
-        approach_[b].velocity > 0.0 ? approach_[b] : Approach{body.velocity.x(), v.clearance};
+        approach_[b].velocity > 0.0 ? approach_[b] : Approach{body.velocity.x(), v.clearance, true};
     v.velocity_margin = free.clearance * free.velocity / from_jet_;
     verdicts_[b] = v;
   }
@@ -74,7 +76,7 @@ std::vector<double> Splitter::state() const {
     const auto& v = verdicts_[b];
     const double known = !v ? 0.0 : v->ejected ? 2.0 : 1.0;
     out.insert(out.end(), {known, v ? v->clearance : 0.0, v ? v->velocity_margin : 0.0, v ? v->time : 0.0,
-                           approach_[b].velocity, approach_[b].clearance});
+                           approach_[b].velocity, approach_[b].clearance, approach_[b].near ? 1.0 : 0.0});
   }
   return out;
 }
@@ -88,6 +90,7 @@ void Splitter::restore(std::span<const double> state) {
     if (known > 0) verdicts_[b] = Verdict{known == 2, v[0], v[1], v[2]};
     approach_[b].velocity = in.number();
     approach_[b].clearance = in.number();
+    approach_[b].near = in.whole(0, 1) == 1;
   }
   in.end();
 }

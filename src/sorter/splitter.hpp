@@ -53,6 +53,7 @@ class Splitter {
   struct Approach {
     double velocity = 0.0;   ///< m/s, along x
     double clearance = 0.0;  ///< m, of the centre above the edge, had it flown on
+    bool near = false;       ///< has come within its own size of the plate
   };
   std::vector<Approach> approach_;
   std::vector<std::optional<Verdict>> verdicts_;

@@ -182,6 +182,31 @@ TEST(Surface, WallsHaveImages) {
   }
 }
 
+/// A wall that reaches over a periodic side, or lies beyond it, is met wherever its images are.
+TEST(Surface, WallsBeyondASideAreMetInside) {
+  for (const bool round : {true, false})
+    for (const double place : {0.0, 41e-3, 45e-3, 50e-3, 60e-3, 100e-3, -55e-3}) {
+      Case c = scene(stone());
+      c.domain.x = {-0.05, 0.05};
+      c.domain.periodic = {"x"};
+      WallSpec step = floor_at(0);
+      step.kind = WallKind::box;
+      step.point = Vec3(place, 0, 0);
+      step.size = Vec3(20e-3, 0.1, 20e-3);
+      c.walls = {step};
+      // 20 mm from the wall's right face, wherever in the domain that is
+      double x = place + 30e-3;
+      while (x >= 0.05) x -= 0.1;
+      const Vec3 at(x, 0, 0), v(-1, 0, 0);
+      c.bodies = {round ? ball("body", 8e-3, at, v) : box("body", Vec3::Constant(8e-3), at, v)};
+      Particles p = make_particles(c);
+      for (int n = 0; n < 30; ++n) p.advance(1e-3);
+      EXPECT_NEAR(p.bodies()[0].velocity.x(), 0.3, 0.02) << place << (round ? " ball" : " box");
+      c.bodies[0].position = Vec3(place > 0.04 ? place - 0.1 : place < -0.04 ? place + 0.1 : place, 0, 0);
+      if (std::abs(c.bodies[0].position.x()) < 0.05) EXPECT_THROW(make_particles(c), InputError) << place;
+    }
+}
+
 TEST(Surface, WhoEntersInAWallIsRefused) {
   Case c = scene(stone());
   WallSpec block = floor_at(0);
