@@ -40,6 +40,7 @@ std::string of_body(const ordered_json& body, const ordered_json& result) {
     return fmt::format("{} is undecided: the time limit{} came before it reached the plate", name,
                        limit_words(result));
   std::string text = fmt::format("{} {}", name, outcome_words(body));
+  if (body.value("thrown_back_by_plate", false)) return text + ": the plate has thrown it back";
   if (has_number(body, "clearance_at_splitter_m")) {
     const double mm = 1e3 * body["clearance_at_splitter_m"].get<double>();
     text += fmt::format("{} its centre passes {:.1f} mm {} the plate's edge",

@@ -70,6 +70,7 @@ Json body_json(const CoupledModel& m, std::size_t b) {
       j["clearance_at_splitter_m"] = v->clearance;
       j["velocity_margin_z_m_s"] = v->velocity_margin;
       j["time_at_splitter_s"] = v->time;
+      if (v->thrown_back) j["thrown_back_by_plate"] = true;
     } else {
       j["outcome"] = "undecided";
     }

@@ -45,10 +45,12 @@ void Splitter::watch(std::span<const Body> bodies, std::span<const Vec3> before,
     if (!passed && !thrown_back) continue;
     const double share = passed ? (edge_.x() - from.x()) / (to.x() - from.x()) : 1.0;
     Verdict v;
-    v.clearance = passed ? from.z() + share * (to.z() - from.z()) - edge_.z()
-                         : std::min(approach_[b].clearance, to.z() - edge_.z());
+    v.clearance =
+        passed ? from.z() + share * (to.z() - from.z()) - edge_.z()
+               : std::min(approach_[b].clearance, approach_[b].clearance < 0.0 ? 0.0 : to.z() - edge_.z());
     v.ejected = passed && v.clearance > 0.0;
     v.time = time - (1.0 - share) * dt;
+    v.thrown_back = !passed;
     const Approach free =
         approach_[b].velocity > 0.0 ? approach_[b] : Approach{body.velocity.x(), v.clearance, true};
     v.velocity_margin = free.clearance * free.velocity / from_jet_;
@@ -74,7 +76,7 @@ std::vector<double> Splitter::state() const {
   std::vector<double> out;
   for (std::size_t b = 0; b < verdicts_.size(); ++b) {
     const auto& v = verdicts_[b];
-    const double known = !v ? 0.0 : v->ejected ? 2.0 : 1.0;
+    const double known = !v ? 0.0 : v->ejected ? 2.0 : v->thrown_back ? 3.0 : 1.0;
     out.insert(out.end(), {known, v ? v->clearance : 0.0, v ? v->velocity_margin : 0.0, v ? v->time : 0.0,
                            approach_[b].velocity, approach_[b].clearance, approach_[b].near ? 1.0 : 0.0});
   }
@@ -84,10 +86,10 @@ std::vector<double> Splitter::state() const {
 void Splitter::restore(std::span<const double> state) {
   StateReader in(state, "verdicts");
   for (std::size_t b = 0; b < verdicts_.size(); ++b) {
-    const int known = in.whole(0, 2);
+    const int known = in.whole(0, 3);
     const Vec3 v = in.vec3();
     verdicts_[b].reset();
-    if (known > 0) verdicts_[b] = Verdict{known == 2, v[0], v[1], v[2]};
+    if (known > 0) verdicts_[b] = Verdict{known == 2, v[0], v[1], v[2], known == 3};
     approach_[b].velocity = in.number();
     approach_[b].clearance = in.number();
     approach_[b].near = in.whole(0, 1) == 1;

@@ -15,6 +15,7 @@ struct Verdict {
   double velocity_margin = 0.0;  ///< m/s: gain of vertical velocity at the jet beyond what just clears the
                                  ///< edge, from the flight before the plate could touch the body
   double time = 0.0;             ///< s, of passing
+  bool thrown_back = false;      ///< by the plate, and fallen below its edge
 };
 
 /// The dividing plate: its edge lies where the machine has it (`edge`, from the nozzle), or `distance` behind

@@ -68,6 +68,31 @@ TEST(Splitter, ABodyThrownBackBelowTheEdgeIsNotEjected) {
   EXPECT_NEAR(splitter.verdict(0)->velocity_margin, 0.24 - 0.48, 1e-9);
 }
 
+/// One that bounces off the plate's edge, up and away from it, and falls: over the plate it never comes.
+TEST(Splitter, ABodyThatBouncesUpAndBackIsNotEjected) {
+  SplitterSpec spec;
+  spec.edge = {0.25, 0.0};
+  Splitter plate(spec, Vec3(0, 0, 0), 0.0, -9.81);
+  Body ball{.name = "ball", .shape = make_sphere(0.01)};
+  ball.position = Vec3(0.23, 0, 0.001);
+  plate.resize(1);
+  const auto step = [&](const Vec3& to, const Vec3& v) {
+    const Vec3 before = ball.position;
+    ball.position = to;
+    ball.velocity = v;
+    plate.watch(std::span(&ball, 1), std::span(&before, 1), 0.1, 1e-3);
+  };
+  step(Vec3(0.235, 0, 0.001), Vec3(3, 0, 0));
+  step(Vec3(0.245, 0, 0.001), Vec3(3, 0, 0));
+  step(Vec3(0.246, 0, 0.02), Vec3(-0.3, 0, 0.2));
+  EXPECT_FALSE(plate.verdict(0));
+  step(Vec3(0.15, 0, -0.1), Vec3(-0.3, 0, -2));
+  ASSERT_TRUE(plate.verdict(0));
+  EXPECT_FALSE(plate.verdict(0)->ejected);
+  EXPECT_TRUE(plate.verdict(0)->thrown_back);
+  EXPECT_LT(plate.verdict(0)->clearance, 0.0);
+}
+
 TEST(SelfSimilarJet, CarriesTheThrustOfTheValve) {
   JetSpec jet;
   ValveSpec valve;
