@@ -25,30 +25,30 @@ std::vector<Key> keys(SorterSpec& s) {
 }
 
 std::vector<Key> keys(FeedSpec& s) {
-  return {decisive(Key{"presentation", choice(s.presentation), none, anything,
-                       "How particles are laid on the belt",
-                       "assumption: the paper stabilises the feed in a monolayer"}),
-          decisive(Key{"arrival_scatter", &s.arrival_scatter, time, not_negative,
-                       "Standard deviation of a particle's time at the jet: slip and roll since the camera",
-                       "assumption: not in the paper"}),
-          decisive(Key{"place_scatter", &s.place_scatter, length, not_negative,
-                       "The same of its place across the belt", "assumption: not in the paper"}),
-          {.name = "file",
-           .slot = &s.file,
-           .help = "CSV file with the columns x, y (m, along and across, from the middle), kind (number of "
-                   "the class, from "
-                   "0), size and yaw, x ascending",
-           .unset = "none",
-           .example = "\"log.csv\"",
-           .file = true},
-          decisive(Key{"lip_speed", &s.lip_speed, velocity, positive,
-                       "Feeder: speed of the particles on its tray, along the belt",
-                       "assumption: the paper does not describe its feeder"}),
-          decisive(Key{"lip_height", &s.lip_height, length, positive, "Feeder: its tray above the belt",
-                       "assumption: the paper does not describe its feeder"}),
-          decisive(Key{"lip_distance", &s.lip_distance, length, positive,
-                       "Feeder: along the belt from its lip to the camera's line",
-                       "assumption: the paper does not give the length of its belt"})};
+  return {
+      decisive(Key{"presentation", choice(s.presentation), none, anything,
+                   "How particles are laid on the belt",
+                   "assumption: the paper stabilises the feed in a monolayer"}),
+      decisive(Key{"arrival_scatter", &s.arrival_scatter, time, not_negative,
+                   "Standard deviation of a particle's time at the jet: slip and roll since the camera",
+                   "assumption: not in the paper"}),
+      decisive(Key{"place_scatter", &s.place_scatter, length, not_negative,
+                   "The same of its place across the belt", "assumption: not in the paper"}),
+      {.name = "file",
+       .slot = &s.file,
+       .help = "CSV file with the columns x [m], y [m] (along, and across from the middle), kind (number of "
+               "the class, from 0), size [mm] and yaw [deg]; x does not fall",
+       .unset = "none",
+       .example = "\"log.csv\"",
+       .file = true},
+      decisive(Key{"lip_speed", &s.lip_speed, velocity, positive,
+                   "Feeder: speed of the particles on its tray, along the belt",
+                   "assumption: the paper does not describe its feeder"}),
+      decisive(Key{"lip_height", &s.lip_height, length, positive, "Feeder: its tray above the belt",
+                   "assumption: the paper does not describe its feeder"}),
+      decisive(Key{"lip_distance", &s.lip_distance, length, positive,
+                   "Feeder: along the belt from its lip to the camera's line",
+                   "assumption: the paper does not give the length of its belt"})};
 }
 
 std::vector<Key> keys(ParticleClassSpec& s) {

@@ -31,7 +31,7 @@ std::vector<Key> keys(ValveSpec& s) {
       {"shape", choice(s.shape), none, anything, "How the opening changes during rise and fall", ""},
       {.name = "trace",
        .slot = &s.trace,
-       .help = "CSV file with the columns time (s) and opening (0 to 1), for shape \"trace\"",
+       .help = "CSV file with the columns time [s] and opening [1] (0 to 1), for shape \"trace\"",
        .unset = "none",
        .example = "\"opening.csv\"",
        .file = true},

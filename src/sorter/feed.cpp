@@ -83,6 +83,40 @@ class Squares {
   std::map<Square, std::vector<Laid>> squares_;
 };
 
+/// sorter.feed.file: particles as a camera logged them.
+CsvTable read_log(const Case& c, std::vector<Problem>& problems) {
+  const std::string file = beside_case(c, c.feed.file);
+  CsvTable table = read_csv(file,
+                            {.kind = "a log of particles",
+                             .columns = {{"x", Dimension::length},
+                                         {"y", Dimension::length},
+                                         {"kind", Dimension::none},
+                                         {"size", Dimension::length},
+                                         {"yaw", Dimension::angle}},
+                             .ascends = false,  // two on one line of the camera are nothing unusual
+                             .example_head = "x [mm], y [mm], kind, size [mm], yaw [deg]",
+                             .example_row = "12.5, -30, 0, 10, 45"},
+                            problems);
+  const double half = 0.5 * c.sorter.belt_width;
+  double last = 0.0;
+  for (std::size_t n = 0; n < table.rows.size() && problems.empty(); ++n) {
+    const std::vector<double>& row = table.rows[n];
+    const auto wrong = [&](const char* what, const std::string& expected) {
+      problems.push_back(table.problem(n, what, expected));
+    };
+    if (row[0] < last) wrong("x falls", "particles in the order in which they come, x from 0 on");
+    else if (std::abs(row[1]) > half)
+      wrong("not on the belt", fmt::format("y from {:.4g} to {:.4g} mm", -1e3 * half, 1e3 * half));
+    else if (row[2] != std::floor(row[2]) || row[2] < 0.0 || row[2] >= static_cast<double>(c.classes.size()))
+      wrong("no kind of this case", fmt::format("a whole number from 0 to {}", c.classes.size() - 1));
+    else if (!(row[3] > 0.0) || row[3] >= c.sorter.belt_width)
+      wrong("no size", fmt::format("above 0 and below the belt's width of {:.4g} mm", 2e3 * half));
+    last = row[0];
+  }
+  if (problems.empty() && table.rows.empty()) problems.push_back({.what = file + " holds no particle"});
+  return table;
+}
+
 }  // namespace
 
 Feed::Feed(const Case& c) : sorter_(c.sorter), feed_(c.feed) {
@@ -98,32 +132,15 @@ Feed::Feed(const Case& c) : sorter_(c.sorter), feed_(c.feed) {
   for (const ParticleClass& k : classes_)
     mean_count_.push_back(c.sorter.throughput * k.spec().share / k.mean_mass() / c.launch.belt_speed *
                           cell_length_);
-  if (feed_.presentation == Presentation::file) read_file(beside_case(c, feed_.file));
+  if (feed_.presentation == Presentation::file) read_file(c);
   if (feeder)
     feeder_ = std::make_unique<FeederStream>(c, classes_, cell_length_,
                                              [this](std::int64_t batch) { return laid(batch, batch + 1); });
 }
 
-void Feed::read_file(const std::string& file) {
+void Feed::read_file(const Case& c) {
   std::vector<Problem> problems;
-  const CsvTable table = read_csv(file,
-                                  {.kind = "a log of particles",
-                                   .columns = {{"x", Dimension::length},
-                                               {"y", Dimension::length},
-                                               {"kind", Dimension::none},
-                                               {"size", Dimension::length},
-                                               {"yaw", Dimension::angle}},
-                                   .example_head = "x [mm], y [mm], kind, size [mm], yaw [deg]",
-                                   .example_row = "12.5, -30, 0, 10, 45"},
-                                  problems);
-  for (std::size_t n = 0; n < table.rows.size() && problems.empty(); ++n) {
-    const std::vector<double>& row = table.rows[n];
-    if (row[0] < 0.0 || !(row[3] > 0.0) || row[2] < 0.0 || row[2] >= static_cast<double>(classes_.size()))
-      problems.push_back(table.problem(
-          n, "no particle of this case",
-          fmt::format("x from 0 on, a size above 0, a kind from 0 to {}", classes_.size() - 1)));
-  }
-  if (problems.empty() && table.rows.empty()) problems.push_back({.what = file + " holds no particle"});
+  const CsvTable table = read_log(c, problems);
   if (!problems.empty()) throw InputError(render(problems));
   const CounterRandom what = stream_of(sorter_.seed, 0, properties);
   std::uint64_t property = 0;
@@ -285,6 +302,10 @@ std::vector<Problem> check_feed(const Case& c) {
                                               1e3 * least, 1e3 * pixel),
                           .expected = "a size of some pixels, or more sorter.camera.pixels",
                           .example = fmt::format("size = \"{:.3g} mm\"", 1e4 * pixel)});
+  }
+  if (problems.empty() && c.feed.presentation == Presentation::file) {
+    read_log(c, problems);
+    for (Problem& p : problems) p.key = "sorter.feed.file";
   }
   if (!problems.empty()) return problems;
   double area_per_mass = 0.0, per_mass = 0.0, pixels_seen = 0.0;

@@ -38,7 +38,7 @@ class Feed {
   const std::vector<ParticleClass>& classes() const { return classes_; }
 
  private:
-  void read_file(const std::string& file);
+  void read_file(const Case& c);
   FeedParticle drawn_of(std::size_t kind, const CounterRandom& what, std::uint64_t& at) const;
   std::vector<FeedParticle> drawn(std::int64_t cell) const;
   void place(std::int64_t cell, std::vector<FeedParticle>& particles,
