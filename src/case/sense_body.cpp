@@ -121,6 +121,16 @@ void sense_materials(const Case& c, Findings& found) {
   for (std::size_t n = 0; n < c.material_pairs.size(); ++n) {
     require_material(c, fmt::format("material_pair.{}.a", n), c.material_pairs[n].a, found);
     require_material(c, fmt::format("material_pair.{}.b", n), c.material_pairs[n].b, found);
+    const auto same = [&](const MaterialPairSpec& p) {
+      const MaterialPairSpec& q = c.material_pairs[n];
+      return (p.a == q.a && p.b == q.b) || (p.a == q.b && p.b == q.a);
+    };
+    if (std::any_of(c.material_pairs.begin(), c.material_pairs.begin() + static_cast<std::ptrdiff_t>(n),
+                    same))
+      found.error(
+          fmt::format("material_pair.{}.b", n),
+          fmt::format("\"{}\" and \"{}\" are a pair already", c.material_pairs[n].a, c.material_pairs[n].b),
+          "each two materials once, in either order");
   }
   if (c.contact.law == ContactLaw::linear && c.contact.linear_stiffness <= 0.0)
     found.error("contact.linear_stiffness", "the linear law needs its stiffness", "a stiffness, more than 0",

@@ -123,7 +123,19 @@ void check_hold(const Case& c, std::size_t f, const std::string& key, Findings& 
                   "a velocity that is the same everywhere and always");
 }
 
-void check_patch(const PatchSpec& patch, const Box& box, std::size_t f, const std::string& key,
+/// The cells of a face that belong to a disc in it are those whose middles it covers.
+bool covers_a_cell(const Case& c, const PatchSpec& patch, std::size_t f) {
+  const auto b = (f / 2 + 1) % 3, d = (f / 2 + 2) % 3;
+  const std::vector<double> across = cell_centres(c.grid.axis[d]);
+  for (const double u : cell_centres(c.grid.axis[b]))
+    for (const double v : across)
+      if (std::hypot(u - patch.centre[static_cast<Eigen::Index>(b)],
+                     v - patch.centre[static_cast<Eigen::Index>(d)]) <= patch.radius)
+        return true;
+  return false;
+}
+
+void check_patch(const Case& c, const PatchSpec& patch, const Box& box, std::size_t f, const std::string& key,
                  Findings& found) {
   const int axis = static_cast<int>(f / 2);
   const double plane = f % 2 == 0 ? box.low[axis] : box.high[axis];
@@ -135,6 +147,11 @@ void check_patch(const PatchSpec& patch, const Box& box, std::size_t f, const st
                 "a centre on the face");
   else if (!box.contains(patch.centre))
     found.error(key + ".centre", "the centre lies outside the box", "a centre on the face");
+  else if (c.grid.geometry != Geometry::axisymmetric && !covers_a_cell(c, patch, f))
+    found.error(key + ".radius",
+                fmt::format("the patch of {:.4g} mm covers the middle of no cell: it is not there",
+                            1e3 * patch.radius),
+                "a larger patch, or finer cells around it");
   if (patch.type == BoundaryType::velocity && !patch.state.velocity)
     found.error(key + ".velocity", "a velocity patch needs its velocity",
                 "a list of 3 velocities or formulas", "velocity = [\"0 m/s\", \"0 m/s\", \"200 m/s\"]");
@@ -228,7 +245,7 @@ void sense_boundaries(const Case& c, Findings& found) {
             "the compressible solvers hold the gas of a patch as it is at the start, the same all over it",
             "a number here, or the formula on the face itself");
     for (std::size_t n = 0; n < c.boundary[f].patches.size() && box; ++n)
-      check_patch(c.boundary[f].patches[n], *box, f, fmt::format("{}.patch.{}", key, n), found);
+      check_patch(c, c.boundary[f].patches[n], *box, f, fmt::format("{}.patch.{}", key, n), found);
   }
   if (box && found.list.empty()) check_way_out(c, *box, found);
 }

@@ -195,6 +195,18 @@ void sense_idle(const Case& c, Findings& found) {
   }
   look_at_valve(c.valve, table("valve"));
   look_at_plate(c.splitter, table("splitter"));
+  if (c.grains.empty())
+    table("coupling")
+        .refuse({"drag", "exchange", "kernel_width"}, "there are no [[grains]]",
+                "[[grains]], or no [coupling]");
+  if (!(c.manifold.vessel > 0.0))
+    table("sorter.manifold")
+        .refuse({"line_diameter"}, "there is no vessel that it feeds", "vessel beside it",
+                "vessel = \"20 L\"");
+  for (std::size_t n = 0; n < c.classes.size(); ++n)
+    if (c.classes[n].form == ParticleForm::sphere)
+      table(fmt::format("sorter.class.{}", n))
+          .refuse({"elongation", "flatness"}, "form is \"sphere\"", "another form", "form = \"rock\"");
   if (c.contact.time_step)
     table("contact").refuse({"time_step_fraction"}, "time_step is given", "either of the two",
                             "time_step = \"1 us\"");
