@@ -226,6 +226,23 @@ class CommandLine(unittest.TestCase):
         self.assertEqual(ejecta("run", broken, "--quiet", "--out", "new.run").returncode, 2)
         self.assertFalse(pathlib.Path("new.run").exists())
 
+    def test_at_rest_is_what_something_bears(self):
+        text = BOUNCE.replace("end_time", 'until = "rest"\nend_time', 1) + 'position = ["0 mm", "0 mm", "50 mm"]\n'
+        floor = '[[wall]]\nname = "floor"\n'
+        # Held at its place for a moment, thrown up to its highest point, not yet released: none of them rests.
+        for more in ("", 'velocity = ["0 m/s", "0 m/s", "0.3 m/s"]\n', 'release_at = "0.05 s"\n'):
+            case = self.case(re.sub(r'end_time = "[^"]*"', 'end_time = "2 s"', text) + more + floor)
+            self.assertEqual(ejecta("run", case, "--quiet", "--force", "--set", "output.report=false").returncode, 0)
+            result = json.loads(pathlib.Path("case.run/result.json").read_text())
+            self.assertAlmostEqual(result["bodies"][0]["final_position_m"][2], 0.005, delta=1e-4)
+            self.assertLess(result["simulated_time_s"], 1.0)
+
+    def test_check_looks_at_the_runs_of_a_study(self):
+        study = '[study]\n[[study.vary]]\nkey = "body.0.diameeter"\nvalues = ["5 mm", "10 mm"]\n'
+        answer = ejecta("check", self.case(BOUNCE + study))
+        self.assertEqual(answer.returncode, 2, answer.stdout)
+        self.assertIn("diameeter", answer.stderr)
+
     def test_the_resolved_case_of_a_run_can_be_run_again(self):
         self.assertEqual(ejecta("run", self.case(), "--quiet").returncode, 0)
         self.assertEqual(ejecta("run", "case.run/case.toml", "--quiet", "--out", "again.run").returncode, 0)
