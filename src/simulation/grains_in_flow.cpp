@@ -11,25 +11,7 @@
 namespace ejecta {
 namespace {
 
-double (*law_of(GrainDragLaw law))(const drag::Surroundings&) {
-  switch (law) {
-    case GrainDragLaw::none:
-      return nullptr;
-    case GrainDragLaw::stokes:
-      return drag::stokes;
-    case GrainDragLaw::schiller_naumann:
-      return [](const drag::Surroundings& s) { return drag::schiller_naumann(s); };
-    case GrainDragLaw::di_felice:
-      return drag::di_felice;
-    case GrainDragLaw::rong:
-      return drag::rong;
-    case GrainDragLaw::koch_hill:
-      return drag::koch_hill;
-    case GrainDragLaw::gidaspow:
-      return drag::gidaspow;
-  }
-  return nullptr;
-}
+const drag::Law& law_of(const Case& c) { return drag::kLaws[static_cast<std::size_t>(c.coupling.drag)]; }
 
 Beyond beyond_face(const BoundarySpec& face) {
   switch (face.type) {
@@ -53,7 +35,7 @@ UnresolvedSetup setup_of(const Case& c, double fluid_density) {
   s.gravity = c.environment.gravity;
   s.body_force = c.flow.body_force;
   s.kernel_width = c.coupling.kernel_width;
-  s.drag = law_of(c.coupling.drag);
+  s.drag = law_of(c).beta;
   s.acts = c.coupling.exchange == GrainExchange::two_way;
   for (std::size_t d = 0; d < 3; ++d)
     s.beyond[d] = {beyond_face(c.boundary[2 * d]), beyond_face(c.boundary[2 * d + 1])};
@@ -61,30 +43,6 @@ UnresolvedSetup setup_of(const Case& c, double fluid_density) {
 }
 
 constexpr double kFullFluid = 0.99;
-
-/// Up to where a law was fitted or derived: Reynolds number, and least fraction of fluid.
-struct Range {
-  double reynolds = 1e300, fraction = 0.0;
-};
-
-Range range_of(GrainDragLaw law) {
-  switch (law) {
-    case GrainDragLaw::stokes:
-      return {1.0, 0.99};
-    case GrainDragLaw::schiller_naumann:
-      return {2e5, 0.99};
-    case GrainDragLaw::di_felice:
-      return {2e5, 0.35};
-    case GrainDragLaw::rong:
-      return {1000.0, 0.37};
-    case GrainDragLaw::koch_hill:
-      return {1000.0, 0.35};
-    case GrainDragLaw::gidaspow:
-      return {2e5, 0.35};
-    default:
-      return {};
-  }
-}
 
 }  // namespace
 
@@ -116,15 +74,15 @@ std::vector<CellField> GrainsInFlow::fields() const {
 }
 
 std::vector<std::string> GrainsInFlow::warnings() const {
-  const Range range = range_of(case_.coupling.drag);
+  const drag::Law& law = law_of(case_);
   std::vector<std::string> all;
-  if (largest_reynolds_ > range.reynolds)
+  if (largest_reynolds_ > law.most_reynolds)
     all.push_back(fmt::format("the drag law \"{}\" holds up to Re = {:.4g}; grains met {:.4g}",
-                              word(case_.coupling.drag), range.reynolds, largest_reynolds_));
-  if (least_fraction_ < range.fraction)
+                              word(case_.coupling.drag), law.most_reynolds, largest_reynolds_));
+  if (least_fraction_ < law.least_fraction)
     all.push_back(
         fmt::format("the drag law \"{}\" holds down to a void fraction of {:.2f}; grains met {:.3f}",
-                    word(case_.coupling.drag), range.fraction, least_fraction_));
+                    word(case_.coupling.drag), law.least_fraction, least_fraction_));
   if (fraction_.acts && first_ > 0 && least_fraction_ < kFullFluid)
     all.push_back(
         fmt::format("grains take up to {:.3f} of the room between them; with bodies in the box the fluid "

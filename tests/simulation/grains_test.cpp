@@ -1,7 +1,11 @@
 #include <gtest/gtest.h>
 
+#include <iterator>
+
 #include "base/parallel.hpp"
 #include "case/load.hpp"
+#include "case/words.hpp"
+#include "coupling/unresolved/drag_law.hpp"
 #include "scratch_directory.hpp"
 #include "simulation/run.hpp"
 
@@ -52,6 +56,14 @@ position = ["24 mm", "16 mm", "16 mm"]
 nlohmann::ordered_json grain_run_figures(Result r) {
   for (const char* key : {"wall_time_s", "cell_steps_per_s", "threads", "operators"}) r.quantities.erase(key);
   return r.quantities;
+}
+
+/// The table of laws stands in the order of the words.
+TEST(DragLaws, HaveTheirWords) {
+  ASSERT_EQ(std::size(drag::kLaws), words(GrainDragLaw{}).size());
+  EXPECT_EQ(drag::kLaws[static_cast<std::size_t>(GrainDragLaw::stokes)].beta, drag::stokes);
+  EXPECT_EQ(drag::kLaws[static_cast<std::size_t>(GrainDragLaw::di_felice)].beta, drag::di_felice);
+  EXPECT_EQ(drag::kLaws[static_cast<std::size_t>(GrainDragLaw::gidaspow)].beta, drag::gidaspow);
 }
 
 TEST(RunWithGrains, AnyNumberOfThreadsGivesTheSameBits) {

@@ -91,4 +91,18 @@ inline double gidaspow(const Surroundings& s) {
   return s.volume() * 0.75 * drag * s.dynamic_viscosity() * std::pow(e, -2.65) / (d * d);
 }
 
+/// A law, and up to where it was fitted or derived.
+struct Law {
+  double (*beta)(const Surroundings&) = nullptr;  ///< nothing: no drag
+  double most_reynolds = 1e300, least_fraction = 0.0;
+};
+/// In the order of the words of the case file (GrainDragLaw).
+inline constexpr Law kLaws[] = {{},
+                                {stokes, 1.0, 0.99},
+                                {[](const Surroundings& s) { return schiller_naumann(s); }, 2e5, 0.99},
+                                {di_felice, 2e5, 0.35},
+                                {rong, 1000.0, 0.37},
+                                {koch_hill, 1000.0, 0.35},
+                                {gidaspow, 2e5, 0.35}};
+
 }  // namespace ejecta::drag
