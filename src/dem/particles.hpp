@@ -197,7 +197,7 @@ class Particles {
   SolidContacts solids_;
   double skin_ = 0.0;                                          // m, candidates are pairs with gap < skin
   double smallest_ = std::numeric_limits<double>::infinity();  // m, of the bounding radii
-  double thinnest_ = std::numeric_limits<double>::infinity();  // m, of the widths of bodies and walls
+  double thinnest_ = std::numeric_limits<double>::infinity();  // m, of bodies but balls, and of walls
   bool relist_ = true;
   std::int64_t lists_ = 0;
   DemTimes times_;

@@ -54,7 +54,9 @@ int Particles::add(Body body) {
 
 void Particles::note_size(const Shape& shape) {
   smallest_ = std::min(smallest_, shape.bounding_radius());
-  thinnest_ = std::min(thinnest_, shape.smallest_feature());
+  // Not of balls: dust in a jet would divide the steps of all by what no two of its grains ever come
+  // together.
+  if (shape.balls().size() != 1) thinnest_ = std::min(thinnest_, shape.smallest_feature());
 }
 
 void Particles::remove(int index) {

@@ -60,8 +60,9 @@ std::string flow_part(const Case& c, const Company& company, std::span<const Bod
         "  steps        about {:.0f} with the fluid, {} and longer ({:.3g} m/s at Courant {}), up to {}\n",
         two_digits(static_cast<double>(f.steps)), time_words(f.time_step), f.fastest, c.run.courant,
         time_words(f.air_until));
-    text += fmt::format("  time         {} on this machine, longer if the fluid gets faster\n",
-                        duration_words(expected_seconds(c, f, bandwidth, grains)));
+    text += fmt::format("  time         {} on this machine, longer if the fluid gets faster{}\n",
+                        duration_words(expected_seconds(c, f, bandwidth, grains)),
+                        grains.empty() ? "" : "; contacts of grains are not counted");
   } else {
     text += "  steps        unknown: no velocity is given, the flow makes its own\n";
   }
