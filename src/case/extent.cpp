@@ -114,4 +114,8 @@ Vec3 place_of_interest(const Case& c, const BodySpec& b) {
   return c.jet.nozzle + Vec3(0.0, c.launch.offset_across + b.across, c.launch.stand_off);
 }
 
+double valve_pitch(const Case& c) {
+  return c.manifold.pitch > 0.0 ? c.manifold.pitch : c.sorter.belt_width / c.manifold.valves;
+}
+
 }  // namespace ejecta

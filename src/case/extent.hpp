@@ -34,6 +34,9 @@ std::optional<int> jet_face(const Case&);
 /// From jet.nozzle along the jet to the plane of that face, m; of a case with a grid and a jet.
 double jet_height(const Case&);
 
+/// From one valve of a sorter to the next, m.
+double valve_pitch(const Case&);
+
 /// Half edge lengths of the box around a body in its own axes, m; zero for a mesh, which only the file knows.
 Vec3 half_extent(const BodySpec&);
 /// Where the body is when it matters: at the start, or on the jet's axis if it comes from the belt, m.

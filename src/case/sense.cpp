@@ -19,11 +19,11 @@ const std::array<Part, 17> parts{{
     {sense_boundaries, {"boundary", "environment", "flow", "grid"}},
     {sense_states, {"boundary", "initial", "flow", "grid", "environment", "fluid", "body"}},
     {sense_materials, {"material", "material_pair", "contact"}},
-    {sense_shapes, {"body", "material", "launch", "run"}},
+    {sense_shapes, {"body", "material", "launch", "run", "domain"}},
     {sense_motion, {"body", "run"}},
     {sense_grains, {"grains", "coupling", "material", "grid", "flow"}},
     {sense_domain, {"domain", "flow"}},
-    {sense_walls, {"wall", "material"}},
+    {sense_walls, {"wall", "material", "splitter"}},
     {sense_sorter,
      {"run", "environment", "flow", "grid", "boundary", "valve", "jet", "launch", "splitter", "body"}},
     {sense_expectations, {"expect", "convergence", "exact", "flow"}},
@@ -32,7 +32,8 @@ const std::array<Part, 17> parts{{
     {sense_map,
      {"map", "launch", "splitter", "body", "grid", "boundary", "jet", "valve", "environment", "flow"}},
     {sense_machine, {"sorter", "launch", "splitter", "valve", "jet", "boundary", "grid", "fluid"}},
-    {sense_idle, {"boundary", "valve", "contact", "body", "wall", "splitter"}},
+    {sense_idle,
+     {"boundary", "valve", "contact", "body", "wall", "splitter", "grains", "coupling", "sorter"}},
 }};
 
 }  // namespace

@@ -209,6 +209,7 @@ void sense_domain(const Case& c, Findings& found) {
 
 void sense_walls(const Case& c, Findings& found) {
   check_names(c.walls, "wall", found);
+  require_material(c, "splitter.material", c.splitter.material, found);  // the plate is one too
   for (std::size_t n = 0; n < c.walls.size(); ++n) {
     const WallSpec& w = c.walls[n];
     const std::string key = fmt::format("wall.{}", n);

@@ -116,8 +116,7 @@ void check_manifold(const Case& c, Findings& found) {
   if (std::set<int>(m.dead_valves.begin(), m.dead_valves.end()).size() >= static_cast<std::size_t>(m.valves))
     found.error("sorter.manifold.dead_valves", "no valve opens", "some valves that work",
                 "dead_valves = [12, 13]");
-  const double belt = c.sorter.belt_width, pitch = m.pitch > 0.0 ? m.pitch : belt / m.valves,
-               span = m.valves * pitch;
+  const double belt = c.sorter.belt_width, pitch = valve_pitch(c), span = m.valves * pitch;
   const std::string fits = fmt::format("pitch = \"{:.3g} mm\"", 1e3 * belt / m.valves);
   if (pitch > belt)
     found.error("sorter.manifold.pitch",

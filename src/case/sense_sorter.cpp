@@ -126,13 +126,6 @@ void sense_sorter(const Case& c, Findings& found) {
   if (c.splitter.edge && (*c.splitter.edge)[0] <= 0.0)
     found.error("splitter.edge", "the edge of the plate is not behind the jet: bodies fly towards +x",
                 "x, from jet.nozzle, more than 0; then z", "edge = [\"250 mm\", \"60 mm\"]");
-  if (const std::string& m = c.splitter.material;
-      !m.empty() && std::none_of(c.materials.begin(), c.materials.end(),
-                                 [&](const MaterialSpec& s) { return s.name == m; }))
-    found.error("splitter.material", fmt::format("there is no material \"{}\"", m),
-                "the name of a [[material]], or none: that of the first body",
-                c.materials.empty() ? "[[material]] name = \"steel\""
-                                    : fmt::format("material = \"{}\"", c.materials.front().name));
   if (c.splitter.enabled && c.splitter.solid && !(c.splitter.thickness > 0.0))
     found.error("splitter.thickness", "bodies cannot hit a plate without thickness",
                 "a length, more than 0, or solid = false", "thickness = \"2 mm\"");

@@ -122,7 +122,7 @@ Json judge_case(const std::string& text, const std::string& path, double bandwid
     }
     tell(warnings);
   } catch (const InputError& e) {  // no text at all, or of what cannot be built
-    tell({{.what = e.what()}});
+    tell(problems_of(e));
   }
   return answer;
 }
@@ -130,12 +130,7 @@ Json judge_case(const std::string& text, const std::string& path, double bandwid
 Json extent_of_stl(const std::string& bytes, const std::string& name) {
   const TriangleMesh mesh = parse_stl(bytes, 1.0, name);
   if (mesh.triangles.empty()) throw InputError(fmt::format("{} has no triangles", name));
-  Vec3 low = mesh.vertices.front(), high = low;
-  for (const Vec3& v : mesh.vertices) {
-    low = low.cwiseMin(v);
-    high = high.cwiseMax(v);
-  }
-  const Vec3 size = high - low;
+  const Vec3 size = extent_of(mesh);
   return {size.x(), size.y(), size.z()};
 }
 

@@ -5,10 +5,6 @@
 
 namespace ejecta {
 
-double valve_pitch(const Case& c) {
-  return c.manifold.pitch > 0.0 ? c.manifold.pitch : c.sorter.belt_width / c.manifold.valves;
-}
-
 double valve_place(const Case& c, int valve) {
   return (valve + 0.5 - 0.5 * c.manifold.valves) * valve_pitch(c);
 }

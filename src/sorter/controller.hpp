@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "case/case.hpp"
+#include "case/extent.hpp"
 #include "sorter/feed_particle.hpp"
 
 namespace ejecta {
@@ -19,8 +20,6 @@ class Controller {
   double speed_, width_, pitch_;
 };
 
-/// m, from one valve to the next.
-double valve_pitch(const Case& c);
 /// m, across the belt from its middle.
 double valve_place(const Case& c, int valve);
 

@@ -184,8 +184,8 @@ int compute_campaign(const std::string& path, CampaignOptions o, const std::file
   return run_campaign(c, o, hands_for(program, who));
 }
 
-void check_study(const std::string& path, const std::vector<std::string>& overrides) {
-  set_up_study(case_tree(path, overrides), load_checked(path, overrides), all_checks());
+void check_study(const Case& c, const std::vector<std::string>& overrides) {
+  set_up_study(case_tree(c.path, overrides), c, all_checks());
 }
 
 std::string campaign_checked(const Case& c) { return check_campaign(c, hands_for({}, {})); }

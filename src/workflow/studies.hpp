@@ -38,8 +38,8 @@ int compute_tasks(const std::string& directory, const std::vector<std::size_t>& 
 /// Gives commands to `program`. Returns the exit code of run_campaign.
 int compute_campaign(const std::string& path, CampaignOptions options, const std::filesystem::path& program,
                      const Attendance& who);
-/// Throws InputError with all that is wrong with any run of a [study].
-void check_study(const std::string& path, const std::vector<std::string>& overrides);
+/// Throws InputError with all that is wrong with any run of a [study]. `c`: loaded with these overrides.
+void check_study(const Case& c, const std::vector<std::string>& overrides);
 /// The parts of a campaign; throws InputError where one cannot be run.
 std::string campaign_checked(const Case& c);
 
