@@ -45,6 +45,7 @@ void expect_refusal(const std::string& path, const Load& load) {
   EXPECT_THAT(message, testing::ContainsRegex("\\.(toml|csv):[0-9]+: error")) << "says where";
   EXPECT_THAT(message, testing::HasSubstr("^")) << "shows the line with a caret";
   EXPECT_THAT(message, testing::HasSubstr("\n  expected: ")) << "says what would be right";
+  EXPECT_THAT(message, testing::ContainsRegex("\n  (example|nearest): ")) << "shows a line that works";
 }
 
 }  // namespace refused

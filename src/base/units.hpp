@@ -43,6 +43,13 @@ std::string unit_words(Dimension d);
 /// to_si.
 std::optional<double> to_si(double value, std::string_view unit, Dimension d);
 
+/// What a quantity other than 0 may be, by size, SI: far beyond what machines and laboratories hold, far
+/// within what arithmetic in single precision bears.
+struct Magnitudes {
+  double least, most;
+};
+Magnitudes magnitudes(Dimension d);
+
 /// In words, e.g. "a time", "a pressure".
 std::string_view describe(Dimension d);
 /// A quantity as one writes it, e.g. "8 ms"; used in error messages.

@@ -250,7 +250,8 @@ struct GrainsSpec {
   SizeLaw sizes = SizeLaw::one;   ///< by number
   double size = 0.0;              ///< m, diameter
   double size_to = 0.0;           ///< m, upper end of "uniform"
-  double spread = 0.0;            ///< lognormal: standard deviation of ln(size)
+  double spread = 0.0;            ///< lognormal: of ln(size); Rosin-Rammler: its exponent
+  std::string sieves;             ///< CSV of sieves
   // How many there are, by one of these:
   int count = 0;
   std::optional<double> mass;                 ///< kg

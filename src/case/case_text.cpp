@@ -71,6 +71,7 @@ void check_text(const std::string& text, const std::string& name) {
                             "ANSI (Windows-1252)",
                             static_cast<unsigned char>(text[at])),
         .expected = "a file saved as UTF-8, as editors offer under \"Save as\"",
+        .example = "title = \"Gr\u00f6\u00dfe\"",
         .place = {std::make_shared<Source>(Source{name, shown}), at, 1}};
     throw CaseError({p});
   }

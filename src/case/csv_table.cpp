@@ -70,7 +70,9 @@ std::optional<double> factor_of(const std::optional<std::string>& unit, Dimensio
 class CsvReader {
  public:
   CsvReader(const std::string& file, std::string text, const CsvForm& form, std::vector<Problem>& problems)
-      : source_(std::make_shared<Source>(Source{file, std::move(text)})), form_(form), problems_(problems) {}
+      : source_(std::make_shared<Source>(Source{file, std::move(text)})), form_(form), problems_(problems) {
+    table_.example_row = form.example_row;
+  }
 
   CsvTable read() {
     const std::string_view all = source_->text;
@@ -217,7 +219,7 @@ CsvTable read_csv(const std::string& file, const CsvForm& form, std::vector<Prob
   std::ostringstream text;
   text << in.rdbuf();
   if (!in) {
-    problems.push_back({.what = fmt::format("cannot read \"{}\"", file)});
+    problems.push_back({.what = fmt::format("cannot read \"{}\"", file), .expected = form.kind});
     return {};
   }
   return CsvReader(file, text.str(), form, problems).read();

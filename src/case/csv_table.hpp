@@ -28,10 +28,11 @@ struct CsvForm {
 struct CsvTable {
   std::vector<std::vector<double>> rows;
   std::vector<Place> places;  ///< of the rows
+  std::string example_row;    ///< of its form
 
   /// A problem with the given row.
   Problem problem(std::size_t row, const std::string& what, const std::string& expected) const {
-    return {.what = what, .expected = expected, .place = places.at(row)};
+    return {.what = what, .expected = expected, .example = example_row, .place = places.at(row)};
   }
 };
 

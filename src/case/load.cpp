@@ -170,6 +170,7 @@ void for_each_file(C& c, const Visit& visit) {
   visit(c.map.measured);
   for (auto& part : c.campaign.parts) visit(part.file);
   visit(c.feed.file);
+  for (auto& g : c.grains) visit(g.sieves);
   for (auto& one : c.classes) {
     visit(one.file);
     visit(one.sieves);

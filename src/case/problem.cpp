@@ -3,6 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+
+#include "base/units.hpp"
 
 namespace ejecta {
 namespace {
@@ -37,6 +40,13 @@ std::string excerpt(const Place& place) {
 }
 
 }  // namespace
+
+std::string place_line(const std::string& key, const Vec3& place) {
+  const auto length = [&](int d) {  // to a micrometre: it is an example
+    return format_quantity(std::round(1e6 * place[d]) / 1e6, Dimension::length);
+  };
+  return fmt::format("{} = [\"{}\", \"{}\", \"{}\"]", key, length(0), length(1), length(2));
+}
 
 CaseError::CaseError(std::vector<Problem> list) : InputError(render(list)), problems(std::move(list)) {}
 

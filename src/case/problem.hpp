@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "base/error.hpp"
+#include "base/vec.hpp"
 #include "case/node.hpp"
 
 namespace ejecta {
@@ -31,6 +32,9 @@ std::vector<Problem> problems_of(const InputError& refusal);
 
 /// So many that nobody reads one more.
 inline bool enough(const std::vector<Problem>& problems) { return problems.size() >= 1000; }
+
+/// A line for an example: key = ["10 mm", "0 mm", "5 mm"].
+std::string place_line(const std::string& key, const Vec3& place);
 
 /// The problem as the user sees it: file, line, key, the line itself with a caret, and the help.
 std::string render(const Problem&);

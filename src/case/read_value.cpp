@@ -182,8 +182,15 @@ class ValueReader {
 
   bool in_range(const Node& node, double v) {
     const Bounds& b = key_.bounds;
-    if ((b.open ? v > b.least : v >= b.least) && v <= b.most) return true;
-    return fail(node, fmt::format("{} is out of range", node.place.text()));
+    if (!((b.open ? v > b.least : v >= b.least) && v <= b.most))
+      return fail(node, fmt::format("{} is out of range", node.place.text()));
+    const Magnitudes m = magnitudes(key_.dimension);
+    const double size = std::abs(v);
+    const bool too_small = b.least == 0.0 && v != 0.0 && size < m.least;
+    if (size <= m.most && !too_small) return true;
+    return fail(node, fmt::format("{} cannot be meant: {} {}", node.place.text(),
+                                  too_small ? "it is less than" : "at most",
+                                  format_quantity(too_small ? m.least : m.most, key_.dimension)));
   }
 
   bool formula(const Node& node, std::string& out) {

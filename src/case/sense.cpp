@@ -16,8 +16,8 @@ struct Part {
 const std::array<Part, 17> parts{{
     {sense_run, {"run", "environment", "fluid", "flow", "body", "splitter"}},
     {sense_grid, {"grid"}},
-    {sense_boundaries, {"boundary", "environment", "flow", "grid"}},
-    {sense_states, {"boundary", "initial", "flow", "grid", "environment", "fluid", "body"}},
+    {sense_boundaries, {"run", "boundary", "environment", "flow", "grid"}},
+    {sense_states, {"run", "boundary", "initial", "flow", "grid", "environment", "fluid", "body"}},
     {sense_materials, {"material", "material_pair", "contact"}},
     {sense_shapes, {"body", "material", "launch", "run", "domain"}},
     {sense_motion, {"body", "run"}},

@@ -37,7 +37,13 @@ void require_file(const Case& c, const std::string& key, const std::string& file
                 "file = \"lump.stl\"");
   else if (!std::filesystem::is_regular_file(beside_case(c, file), ignored))
     found.error(key, fmt::format("there is no file \"{}\"", beside_case(c, file)),
-                "a file, relative to the folder of the case");
+                "a file, relative to the folder of the case", "file = \"lump.stl\"");
+}
+
+/// The place, brought into the middle of an interval along one axis.
+Vec3 within(Vec3 place, int axis, double low, double high) {
+  place[axis] = 0.5 * (low + high);
+  return place;
 }
 
 /// Spheres in a row that touch or overlap fill the length; gaps would make the cluster fall apart.
@@ -88,12 +94,16 @@ void check_shape(const Case& c, const BodySpec& b, const std::string& key, Findi
       break;
     case ShapeKind::polyhedron:
       if (b.vertices.size() < 4 || half_extent(b).minCoeff() <= 0.0)
-        found.error(key + ".vertices", "these points span no volume", "at least 4 points, not in one plane");
+        found.error(
+            key + ".vertices", "these points span no volume", "at least 4 points, not in one plane",
+            R"(vertices = [["0 mm", "0 mm", "0 mm"], ["9 mm", "0 mm", "0 mm"], ["0 mm", "9 mm", "0 mm"], )"
+            R"(["0 mm", "0 mm", "9 mm"]])");
       break;
     case ShapeKind::mesh:
       if (b.files.empty()) require_file(c, key + ".file", b.file, "mesh", found);
       if (!b.files.empty() && !b.file.empty())
-        found.error(key + ".files", "a mesh has either `file` or `files`", "one of them");
+        found.error(key + ".files", "a mesh has either `file` or `files`", "one of them",
+                    fmt::format("file = \"{}\"", b.files.front()));
       for (const std::string& file : b.files) require_file(c, key + ".files", file, "mesh", found);
       break;
   }
@@ -130,7 +140,8 @@ void sense_materials(const Case& c, Findings& found) {
       found.error(
           fmt::format("material_pair.{}.b", n),
           fmt::format("\"{}\" and \"{}\" are a pair already", c.material_pairs[n].a, c.material_pairs[n].b),
-          "each two materials once, in either order");
+          "each two materials once, in either order",
+          fmt::format("a = \"{}\", b = \"{}\"", c.materials.front().name, c.materials.back().name));
   }
   if (c.contact.law == ContactLaw::linear && c.contact.linear_stiffness <= 0.0)
     found.error("contact.linear_stiffness", "the linear law needs its stiffness", "a stiffness, more than 0",
@@ -174,7 +185,8 @@ void sense_shapes(const Case& c, Findings& found) {
           fmt::format("the body starts outside of the domain, whose {} goes from {:.4g} to {:.4g} mm: it "
                       "would be taken away at once",
                       axis, 1e3 * sides[d]->front(), 1e3 * sides[d]->back()),
-          "a place within domain." + axis);
+          "a place within domain." + axis,
+          place_line("position", within(b.position, d, sides[d]->front(), sides[d]->back())));
     }
     if (b.enters_at.value_or(0.0) >= c.run.end_time)
       found.warning(key + ".enters_at", "the body never comes in: the run ends before",

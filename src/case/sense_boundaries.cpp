@@ -49,6 +49,60 @@ void check_periodic_cells(const Case& c, std::size_t axis, Findings& found) {
         "equal cells at both ends of a periodic axis", "grading = [1]");
 }
 
+/// A face of the box: places all over it, each for the same share of its area (of one radian of it around an
+/// axis).
+struct FacePlaces {
+  std::vector<Vec3> at;
+  double share = 0.0;  ///< m2
+};
+
+FacePlaces places_on(const Case& c, const Box& box, std::size_t f) {
+  constexpr int kAlong = 40;
+  const int a = static_cast<int>(f / 2), b = (a + 1) % 3, d = (a + 2) % 3;
+  const bool round = c.grid.geometry == Geometry::axisymmetric;
+  const Vec3 size = box.high - box.low;
+  FacePlaces face;
+  double area = round ? 1.0 : size[b] * size[d];
+  if (round)
+    area = a == 2 ? 0.5 * (std::pow(box.high.x(), 2) - std::pow(box.low.x(), 2)) : box.high.x() * size.z();
+  face.share = area / (kAlong * kAlong);
+  for (int i = 0; i < kAlong; ++i)
+    for (int j = 0; j < kAlong; ++j) {
+      Vec3 x;
+      x[a] = f % 2 ? box.high[a] : box.low[a];
+      x[b] = box.low[b] + (i + 0.5) / kAlong * size[b];
+      x[d] = box.low[d] + (j + 0.5) / kAlong * size[d];
+      if (round && a == 2)  // equal areas of rings
+        x.x() = std::sqrt(std::pow(box.low.x(), 2) + (i + 0.5) / kAlong * 2.0 * area);
+      face.at.push_back(x);
+    }
+  return face;
+}
+
+/// A wall stays where it is: its velocity is along itself.
+void check_wall_motion(const Case& c, std::size_t f, const std::string& key, Findings& found) {
+  const BoundarySpec& face = c.boundary[f];
+  const std::optional<Box> box = grid_box(c);
+  if (face.type != BoundaryType::moving_wall || !face.state.velocity || !box) return;
+  constexpr double kThrough = 1e-6;  // of its speed: round-off of formulas
+  std::array<Expression, 3> velocity;
+  for (std::size_t d = 0; d < 3; ++d) velocity[d] = Expression((*face.state.velocity)[d]);
+  for (const double t : {0.0, 0.31 * c.run.end_time, 0.73 * c.run.end_time})
+    for (const Vec3& x : places_on(c, *box, f).at) {
+      Vec3 v;
+      for (int d = 0; d < 3; ++d) v[d] = velocity[static_cast<std::size_t>(d)](x.x(), x.y(), x.z(), t);
+      const double through = v[static_cast<int>(f / 2)];
+      if (!(std::abs(through) > kThrough * v.norm())) continue;
+      return found.error(
+          key + ".velocity",
+          fmt::format("the wall would move by {:.4g} m/s across itself: a wall stays where it is, and so "
+                      "does the air behind it",
+                      through),
+          fmt::format("no velocity along {}, or a face through which air comes", "xyz"[f / 2]),
+          "type = \"velocity\"");
+    }
+}
+
 void check_face(const Case& c, std::size_t f, const std::string& key, Findings& found) {
   const BoundarySpec& face = c.boundary[f];
   const BoundarySpec& opposite = c.boundary[f ^ 1u];
@@ -63,6 +117,7 @@ void check_face(const Case& c, std::size_t f, const std::string& key, Findings& 
   if (face.type == BoundaryType::moving_wall && !face.state.velocity)
     found.error(key + ".velocity", "a moving wall needs its velocity", "a list of 3 velocities or formulas",
                 "velocity = [\"1 m/s\", \"0 m/s\", \"0 m/s\"]");
+  check_wall_motion(c, f, key, found);
   if (face.type == BoundaryType::wave_transmissive && is_incompressible(c))
     found.error(key + ".type", "there is no sound in incompressible flow for a wave-transmissive boundary",
                 "\"pressure-outlet\" or \"free-stream\"", "type = \"free-stream\"");
@@ -101,6 +156,14 @@ std::vector<std::string> formulas_of(const StateSpec& s) {
   return keys;
 }
 
+/// A value of a key of a state.
+std::string example_of(const std::string& key) {
+  if (key == "pressure") return "\"1 bar absolute\"";
+  if (key == "density") return "\"1.2 kg/m3\"";
+  if (key == "temperature") return "\"300 K\"";
+  return key == "k" ? "\"0.5 m2/s2\"" : "\"10 m2/s3\"";
+}
+
 /// What bodies meet at a face, where one might expect something else.
 void check_hold(const Case& c, std::size_t f, const std::string& key, Findings& found) {
   const BoundarySpec& face = c.boundary[f];
@@ -135,23 +198,35 @@ bool covers_a_cell(const Case& c, const PatchSpec& patch, std::size_t f) {
   return false;
 }
 
+/// The widest of the cells of a face, m: no disc with that radius misses all of their middles.
+double widest_around_face(const Case& c, std::size_t f) {
+  double widest = 0.0;
+  for (const std::size_t a : {(f / 2 + 1) % 3, (f / 2 + 2) % 3})
+    widest = std::max(widest, widest_cell(c.grid.axis[a], -1e300, 1e300));
+  return widest;
+}
+
 void check_patch(const Case& c, const PatchSpec& patch, const Box& box, std::size_t f, const std::string& key,
                  Findings& found) {
   const int axis = static_cast<int>(f / 2);
   const double plane = f % 2 == 0 ? box.low[axis] : box.high[axis];
   const double size = (box.high - box.low).maxCoeff();
+  Vec3 on_face = patch.centre.cwiseMax(box.low).cwiseMin(box.high);
+  on_face[axis] = plane;
   if (std::abs(patch.centre[axis] - plane) > 1e-6 * size)
     found.error(key + ".centre",
                 fmt::format("the centre is not on the face, which is at {} = {}", axis_names[f / 2],
                             format_quantity(plane, Dimension::length)),
-                "a centre on the face");
+                "a centre on the face", place_line("centre", on_face));
   else if (!box.contains(patch.centre))
-    found.error(key + ".centre", "the centre lies outside the box", "a centre on the face");
+    found.error(key + ".centre", "the centre lies outside the box", "a centre on the face",
+                place_line("centre", on_face));
   else if (c.grid.geometry != Geometry::axisymmetric && !covers_a_cell(c, patch, f))
     found.error(key + ".radius",
                 fmt::format("the patch of {:.4g} mm covers the middle of no cell: it is not there",
                             1e3 * patch.radius),
-                "a larger patch, or finer cells around it");
+                "a larger patch, or finer cells around it",
+                fmt::format("radius = \"{:.3g} mm\"", 1e3 * widest_around_face(c, f)));
   if (patch.type == BoundaryType::velocity && !patch.state.velocity)
     found.error(key + ".velocity", "a velocity patch needs its velocity",
                 "a list of 3 velocities or formulas", "velocity = [\"0 m/s\", \"0 m/s\", \"200 m/s\"]");
@@ -160,36 +235,6 @@ void check_patch(const Case& c, const PatchSpec& patch, const Box& box, std::siz
 bool is_open(BoundaryType t) {
   return t == BoundaryType::pressure_outlet || t == BoundaryType::wave_transmissive ||
          t == BoundaryType::free_stream || t == BoundaryType::total_pressure;
-}
-
-/// A face of the box: places all over it, each for the same share of its area (of one radian of it around an
-/// axis).
-struct FacePlaces {
-  std::vector<Vec3> at;
-  double share = 0.0;  ///< m2
-};
-
-FacePlaces places_on(const Case& c, const Box& box, std::size_t f) {
-  constexpr int kAlong = 40;
-  const int a = static_cast<int>(f / 2), b = (a + 1) % 3, d = (a + 2) % 3;
-  const bool round = c.grid.geometry == Geometry::axisymmetric;
-  const Vec3 size = box.high - box.low;
-  FacePlaces face;
-  double area = round ? 1.0 : size[b] * size[d];
-  if (round)
-    area = a == 2 ? 0.5 * (std::pow(box.high.x(), 2) - std::pow(box.low.x(), 2)) : box.high.x() * size.z();
-  face.share = area / (kAlong * kAlong);
-  for (int i = 0; i < kAlong; ++i)
-    for (int j = 0; j < kAlong; ++j) {
-      Vec3 x;
-      x[a] = f % 2 ? box.high[a] : box.low[a];
-      x[b] = box.low[b] + (i + 0.5) / kAlong * size[b];
-      x[d] = box.low[d] + (j + 0.5) / kAlong * size[d];
-      if (round && a == 2)  // equal areas of rings
-        x.x() = std::sqrt(std::pow(box.low.x(), 2) + (i + 0.5) / kAlong * 2.0 * area);
-      face.at.push_back(x);
-    }
-  return face;
 }
 
 /// What comes in through faces with a velocity leaves through others, or there is an open one: a liquid, and
@@ -212,7 +257,7 @@ void check_way_out(const Case& c, const Box& box, Findings& found) {
         if ((x - p.centre).norm() <= p.radius) type = p.type, state = &p.state;
       if (is_open(type)) return;
       if (type == BoundaryType::jet) through = -1.0;  // inwards, however much
-      if ((type == BoundaryType::velocity || type == BoundaryType::moving_wall) && state->velocity)
+      if (type == BoundaryType::velocity && state->velocity)
         through += (f % 2 ? 1.0 : -1.0) * places.share *
                    Expression((*state->velocity)[static_cast<std::size_t>(a)])(x.x(), x.y(), x.z(), 0.0);
     }
@@ -243,7 +288,9 @@ void sense_boundaries(const Case& c, Findings& found) {
         found.error(
             fmt::format("{}.patch.{}.{}", key, n, formula),
             "the compressible solvers hold the gas of a patch as it is at the start, the same all over it",
-            "a number here, or the formula on the face itself");
+            "a number here, or the formula on the face itself",
+            formula == "velocity" ? "velocity = [\"0 m/s\", \"0 m/s\", \"100 m/s\"]"
+                                  : formula + " = " + example_of(formula));
     for (std::size_t n = 0; n < c.boundary[f].patches.size() && box; ++n)
       check_patch(c, c.boundary[f].patches[n], *box, f, fmt::format("{}.patch.{}", key, n), found);
   }

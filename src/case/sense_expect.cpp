@@ -34,7 +34,8 @@ void sense_expectations(const Case& c, Findings& found) {
       found.error(key, "nothing to compare with", "tolerance, relative_tolerance, at_least, at_most or text",
                   "reference = 1.087, relative_tolerance = 0.03");
     if (number && !e.text.empty())
-      found.error(key + ".text", "a text and a number at once", "one of the two");
+      found.error(key + ".text", "a text and a number at once", "one of the two",
+                  fmt::format("text = \"{}\"", e.text));
     if (e.converging && c.convergence.factors.size() < 3)
       found.error(key + ".converging", "it takes three grids to see that changes shrink",
                   "at least three convergence.factors", "factors = [1, 2, 4]");
@@ -42,7 +43,8 @@ void sense_expectations(const Case& c, Findings& found) {
       found.error(key + ".relative_tolerance", "a relative tolerance about the reference 0 allows nothing",
                   "an absolute tolerance", "tolerance = 0.01");
     if (e.at_least && e.at_most && *e.at_least > *e.at_most)
-      found.error(key + ".at_least", "the lower limit is above the upper one", "at_least below at_most");
+      found.error(key + ".at_least", "the lower limit is above the upper one", "at_least below at_most",
+                  fmt::format("at_least = {}, at_most = {}", *e.at_most, *e.at_least));
   }
   const auto& factors = c.convergence.factors;
   if (factors.size() == 1)
@@ -56,7 +58,8 @@ void sense_expectations(const Case& c, Findings& found) {
   cells_stay_whole(c, found);
   if (!c.exact.velocity && !c.exact.pressure && !c.exact.density) return;
   if (c.flow.solver == FlowSolver::none)
-    found.error("exact", "an exact flow without a flow", "a flow solver");
+    found.error("exact", "an exact flow without a flow", "a flow solver",
+                "[flow] solver = \"incompressible\"");
 }
 
 }  // namespace ejecta

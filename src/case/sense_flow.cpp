@@ -104,7 +104,7 @@ void sense_grid(const Case& c, Findings& found) {
   }
   if (cells > 2e9)
     found.error("grid", fmt::format("{:.3g} cells: no machine this program runs on holds them", cells),
-                "at most 2e9 cells");
+                "at most 2e9 cells", "[grid.x] cells = [80]");
   if (c.grid.geometry != Geometry::axisymmetric) return;
   if (!c.grid.axis[0].points.empty() && c.grid.axis[0].points.front() < 0.0)
     found.error("grid.x.points", "in axisymmetric geometry x is the radius and cannot be negative",

@@ -4,10 +4,12 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/error.hpp"
 #include "base/text.hpp"
 #include "case/extent.hpp"
 #include "case/findings.hpp"
 #include "case/names.hpp"
+#include "case/size_distribution.hpp"
 #include "case/size_law.hpp"
 #include "case/words.hpp"
 
@@ -21,22 +23,21 @@ constexpr double kCellsOfGrains = 3.0;  // least width of a cell, in diameters
 constexpr double kWideKernel = 6.0;     // diameters: over several cells of less width
 constexpr double kDilute = 0.01;        // solids: more is not one grain alone
 
-double largest_size(const GrainsSpec& g) { return g.sizes == SizeLaw::uniform ? g.size_to : g.size; }
-
-/// Mean of d^3 over the sizes, m3.
-double mean_cube(const GrainsSpec& g) {
-  const double d = g.size;
-  if (g.sizes == SizeLaw::uniform && g.size_to > d)
-    return (std::pow(g.size_to, 4) - std::pow(d, 4)) / (4 * (g.size_to - d));
-  if (g.sizes == SizeLaw::lognormal) return d * d * d * std::exp(4.5 * g.spread * g.spread);
-  return d * d * d;
+/// Rosin-Rammler and sieves spread over decades: beyond the largest hundredth, by number, single grains are.
+double largest_size(const Case& c, const GrainsSpec& g) {
+  if (g.sizes == SizeLaw::lognormal || g.sizes == SizeLaw::one) return g.size;
+  return size_distribution(g, folder_of(c)).quantile(g.sizes == SizeLaw::uniform ? 1.0 : 0.99);
 }
 
-void check_sizes_of(const GrainsSpec& g, const std::string& at, Findings& found) {
-  if (g.sizes == SizeLaw::rosin_rammler || g.sizes == SizeLaw::sieves)
-    found.error(at + "sizes", fmt::format("grains are not drawn by \"{}\"", word(g.sizes)),
-                "\"one\", \"uniform\" or \"lognormal\"", "sizes = \"lognormal\"");
-  check_size_law(g, at, "1 mm", found);
+void check_sizes_of(const Case& c, const GrainsSpec& g, const std::string& at, Findings& found) {
+  const std::size_t before = found.list.size();
+  check_size_law(c, g, at, "1 mm", found);
+  if (found.list.size() > before) return;
+  try {
+    size_distribution(g, folder_of(c));
+  } catch (const InputError& e) {
+    found.error(at + "sieves", e.what(), e.advice.expected, e.advice.example);
+  }
 }
 
 void check_amount(const GrainsSpec& g, const std::string& at, Findings& found) {
@@ -57,8 +58,14 @@ double packing_of(const Case& c, const GrainsSpec& g) {
   double density = g.density.value_or(0.0);
   for (const MaterialSpec& m : c.materials)
     if (!g.density && (m.name == g.material)) density = m.density;
-  const double volume = g.mass ? *g.mass / density : g.count * std::numbers::pi / 6 * mean_cube(g);
+  const double volume =
+      g.mass ? *g.mass / density
+             : g.count * std::numbers::pi / 6 * size_distribution(g, folder_of(c)).mean_power(3);
   return volume / edges.prod();
+}
+
+std::string region_line(const Vec3& low, const Vec3& high) {
+  return fmt::format("region = [{}, {}]", place_line("", low).substr(3), place_line("", high).substr(3));
 }
 
 void check_place(const Case& c, const GrainsSpec& g, const std::string& at, Findings& found) {
@@ -66,13 +73,14 @@ void check_place(const Case& c, const GrainsSpec& g, const std::string& at, Find
     return found.error(at + "region", "it is not said where the grains start", "two corners of a box",
                        R"(region = [["0 mm", "0 mm", "0 mm"], ["10 mm", "10 mm", "5 mm"]])");
   const Vec3 &low = (*g.region)[0], &high = (*g.region)[1];
-  const double d = largest_size(g);
+  const double d = largest_size(c, g);
   if (!((high - low).minCoeff() >= d * (1 - 1e-9)))
     return found.error(
         at + "region",
         fmt::format("the region is {:.4g} x {:.4g} x {:.4g} mm, grains are {:.4g} mm", 1e3 * (high - low).x(),
                     1e3 * (high - low).y(), 1e3 * (high - low).z(), 1e3 * d),
-        "the lower and the upper corner, at least a grain apart along each axis");
+        "the lower and the upper corner, at least a grain apart along each axis",
+        region_line(low.cwiseMin(high), low.cwiseMin(high) + Vec3::Constant(10 * d)));
   if (const auto box = grid_box(c); box && c.flow.solver != FlowSolver::none)
     for (int a = 0; a < 3; ++a) {
       const double slack = 1e-9 * (box->high[a] - box->low[a]);
@@ -82,7 +90,7 @@ void check_place(const Case& c, const GrainsSpec& g, const std::string& at, Find
           fmt::format("grains start outside the box: {:.4g} to {:.4g} mm along {}, the box is "
                       "{:.4g} to {:.4g} mm",
                       1e3 * low[a], 1e3 * high[a], "xyz"[a], 1e3 * box -> low[a], 1e3 * box -> high[a]),
-          "a region inside the box, or a larger box");
+          "a region inside the box, or a larger box", region_line(box->low, box->high));
     }
   if (g.over > 0.0) return;  // they go on while others come
   const double packed = packing_of(c, g);
@@ -106,7 +114,7 @@ void check_cells(const Case& c, const GrainsSpec& g, const std::string& at, Find
     if (centres.size() < 2) continue;
     for (const double x : centres) narrowest = std::min(narrowest, widest_cell(axis, x, x));
   }
-  const double d = largest_size(g), cells = narrowest / d;
+  const double d = largest_size(c, g), cells = narrowest / d;
   if (cells >= kCellsOfGrains * (1 - 1e-9) || narrowest > 1e299) return;
   if (c.coupling.kernel_width >= kWideKernel && cells >= 1.0) return;
   found.error(
@@ -136,7 +144,8 @@ void check_periodic_sides(const Case& c, Findings& found) {
                   fmt::format("grains and flow must both be periodic in {}, over the same length: the box is "
                               "{:.4g} to {:.4g} mm",
                               "xyz"[a], 1e3 * box -> low[d], 1e3 * box -> high[d]),
-                  "no [domain] along periodic sides of the box; it follows from them", "");
+                  "no [domain] along periodic sides of the box; it follows from them",
+                  fmt::format("[boundary.{}_min] type = \"periodic\"", "xyz"[a]));
   }
 }
 
@@ -167,7 +176,7 @@ void sense_grains(const Case& c, Findings& found) {
     if (g.held && !g.velocity.isZero())
       found.error(at + "velocity", "`velocity` does nothing here: the grains are held",
                   "held = false, or no velocity", "held = false");
-    check_sizes_of(g, at, found);
+    check_sizes_of(c, g, at, found);
     check_amount(g, at, found);
     if (found.list.size() > before) continue;
     check_place(c, g, at, found);

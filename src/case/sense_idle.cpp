@@ -39,20 +39,27 @@ class Idle {
   Findings& found_;
 };
 
-/// Which of the keys that only some kinds have a kind takes.
-struct Takes {
-  Names all, mine;
-};
-
-template <class Kind>
-void refuse_of_other_kinds(Idle& idle, const Takes& takes, Kind kind, const char* key) {
-  std::vector<std::string> mine(takes.mine.begin(), takes.mine.end());
-  for (const std::string_view name : takes.all)
-    if (std::find(takes.mine.begin(), takes.mine.end(), name) == takes.mine.end())
-      idle.refuse({name}, fmt::format("{} is \"{}\"", key, word(kind)),
-                  mine.empty() ? fmt::format("no `{}`, or another {}", name, key)
-                               : fmt::format("no `{}`, or another {}; \"{}\" takes {}", name, key, word(kind),
-                                             joined(mine)));
+/// Refuses keys, of all those that only some kinds have, that this kind does not take. keys_of(kind): those
+/// that it takes.
+template <class Kind, class KeysOf>
+void refuse_of_other_kinds(Idle& idle, const Names& all, Kind kind, const char* key, const KeysOf& keys_of) {
+  const Names taken = keys_of(kind);
+  const auto takes = [](const Names& names, std::string_view name) {
+    return std::find(names.begin(), names.end(), name) != names.end();
+  };
+  const std::vector<std::string> mine(taken.begin(), taken.end());
+  for (const std::string_view name : all) {
+    if (takes(taken, name)) continue;
+    std::string example;
+    for (std::size_t n = words(kind).size(); n-- > 0;)
+      if (takes(keys_of(static_cast<Kind>(n)), name))
+        example = fmt::format("{} = \"{}\"", key, words(kind)[n].name);
+    idle.refuse({name}, fmt::format("{} is \"{}\"", key, word(kind)),
+                mine.empty() ? fmt::format("no `{}`, or another {}", name, key)
+                             : fmt::format("no `{}`, or another {}; \"{}\" takes {}", name, key, word(kind),
+                                           joined(mine)),
+                example.empty() ? "fit_error = \"0 mm\"" : example);  // the one key that parts a kind in two
+  }
 }
 
 Names shape_keys(const BodySpec& b) {
@@ -78,10 +85,13 @@ Names shape_keys(const BodySpec& b) {
 
 void look_at_body(const BodySpec& b, Idle idle) {
   refuse_of_other_kinds(idle,
-                        {{"diameter", "size", "spheres", "cluster", "sphere_diameter", "vertices", "file",
-                          "files", "fit_error", "scale", "exponents", "true_box_mass"},
-                         shape_keys(b)},
-                        b.shape, "shape");
+                        {"diameter", "size", "spheres", "cluster", "sphere_diameter", "vertices", "file",
+                         "files", "fit_error", "scale", "exponents", "true_box_mass"},
+                        b.shape, "shape", [&](ShapeKind shape) {
+                          BodySpec other = b;
+                          other.shape = shape;
+                          return shape_keys(other);
+                        });
   if (b.on_belt) {
     idle.refuse({"position"}, "[launch] says where a body from the belt is",
                 "`along` and `across`, or `behind` and `gap`, in this [[body]]; or no on_belt",
@@ -108,14 +118,14 @@ void look_at_body(const BodySpec& b, Idle idle) {
   if (b.copies == 1) idle.refuse({"every"}, "there is one body", "copies, or no `every`", "copies = 10");
   if (b.random_rotation)
     idle.refuse({"rotation_axis", "rotation_angle"}, "random_rotation turns the body at random",
-                "either of the two");
+                "either of the two", "random_rotation = false");
   else if (!idle.given("rotation_angle") && b.path.empty())
     idle.refuse({"rotation_axis"}, "no angle is given", "rotation_angle beside it",
                 "rotation_angle = \"45 deg\"");
 }
 
-Names wall_keys(const WallSpec& w) {
-  switch (w.kind) {
+Names wall_keys(WallKind kind) {
+  switch (kind) {
     case WallKind::plane:
       return {"normal"};
     case WallKind::plate:
@@ -130,10 +140,9 @@ Names wall_keys(const WallSpec& w) {
 }
 
 void look_at_wall(const WallSpec& w, Idle idle) {
-  refuse_of_other_kinds(
-      idle,
-      {{"normal", "size", "file", "scale", "rotation_axis", "rotation_angle", "two_sided"}, wall_keys(w)},
-      w.kind, "kind");
+  refuse_of_other_kinds(idle,
+                        {"normal", "size", "file", "scale", "rotation_axis", "rotation_angle", "two_sided"},
+                        w.kind, "kind", wall_keys);
   if (!idle.given("rotation_angle"))
     idle.refuse({"rotation_axis"}, "no angle is given", "rotation_angle beside it",
                 "rotation_angle = \"45 deg\"");
@@ -158,9 +167,10 @@ void look_at_inflow(const Case& c, BoundaryType type, bool patches, Idle idle) {
                       type == BoundaryType::slip || type == BoundaryType::symmetry ||
                       type == BoundaryType::periodic || type == BoundaryType::jet;
   if (closed && !patches)
-    idle.refuse({"pressure", "density", "k", "epsilon"}, because(), "no such key, or an open face");
+    idle.refuse({"pressure", "density", "k", "epsilon"}, because(), "no such key, or an open face",
+                "type = \"pressure-outlet\"");
   if (closed && !patches && !(type == BoundaryType::wall || type == BoundaryType::moving_wall))
-    idle.refuse({"temperature"}, because(), "no such key, or an open face");
+    idle.refuse({"temperature"}, because(), "no such key, or an open face", "type = \"pressure-outlet\"");
 }
 
 void look_at_valve(const ValveSpec& v, Idle idle) {
@@ -198,7 +208,7 @@ void sense_idle(const Case& c, Findings& found) {
   if (c.grains.empty())
     table("coupling")
         .refuse({"drag", "exchange", "kernel_width"}, "there are no [[grains]]",
-                "[[grains]], or no [coupling]");
+                "[[grains]], or no [coupling]", "[[grains]] size = \"0.1 mm\"");
   if (!(c.manifold.vessel > 0.0))
     table("sorter.manifold")
         .refuse({"line_diameter"}, "there is no vessel that it feeds", "vessel beside it",

@@ -44,10 +44,6 @@ bool has_machine(const Case& c, Findings& found) {
 void check_sizes(const Case& c, std::size_t n, Findings& found) {
   const ParticleClassSpec& k = c.classes[n];
   const std::string at = fmt::format("sorter.class.{}.", n);
-  const bool by_sieves = k.sizes == SizeLaw::sieves;
-  if (!by_sieves && !(k.size > 0.0))
-    found.error(at + "size", fmt::format("\"{}\" has no size", k.name), "a length, more than 0",
-                "size = \"10 mm\"");
   const double largest = std::max(k.size, k.size_to) / k.elongation;
   if (largest >= c.sorter.belt_width)
     found.error(at + "size",
@@ -55,24 +51,11 @@ void check_sizes(const Case& c, std::size_t n, Findings& found) {
                             1e3 * c.sorter.belt_width),
                 "a size below sorter.belt_width",
                 fmt::format("size = \"{:.3g} mm\"", 100.0 * c.sorter.belt_width));
-  check_size_law(k, at, "20 mm", found);
-  const auto need_file = [&](const char* key, const std::string& file, const char* example) {
-    std::error_code none;
-    if (file.empty())
-      found.error(at + key, "missing: the file", "a file, relative to the folder of the case", example);
-    else if (!std::filesystem::is_regular_file(beside_case(c, file), none))
-      found.error(at + key, fmt::format("there is no file \"{}\"", beside_case(c, file)),
-                  "a file, relative to the folder of the case", example);
-  };
-  const auto idle = [&](bool given, const char* key, const char* other) {
-    if (given)
-      found.error(at + key, fmt::format("`{}` does nothing here: it belongs to {}", key, other),
-                  fmt::format("{}, or no {}", other, key), other);
-  };
-  idle(!by_sieves && !k.sieves.empty(), "sieves", "sizes = \"sieves\"");
-  idle(k.form != ParticleForm::mesh && !k.file.empty(), "file", "form = \"mesh\"");
-  if (by_sieves) need_file("sieves", k.sieves, "sieves = \"sieves.csv\"");
-  if (k.form == ParticleForm::mesh) need_file("file", k.file, "file = \"rock.stl\"");
+  check_size_law(c, k, at, "20 mm", found);
+  if (k.form == ParticleForm::mesh) need_file(c, at + "file", k.file, "file = \"rock.stl\"", found);
+  else if (!k.file.empty())
+    found.error(at + "file", "`file` does nothing here: it belongs to form = \"mesh\"",
+                "form = \"mesh\", or no file", "form = \"mesh\"");
 }
 
 void check_classes(const Case& c, Findings& found) {

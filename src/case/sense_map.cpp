@@ -36,7 +36,7 @@ bool has_body(const Case& c, Findings& found) {
   }
   if (!c.bodies[body].on_belt || !c.bodies[body].behind.empty()) {
     found.error("map.body", fmt::format("\"{}\" is not placed on the belt by itself", c.bodies[body].name),
-                "a body with on_belt = true, and without `behind`");
+                "a body with on_belt = true, and without `behind`", "on_belt = true");
     return false;
   }
   return true;
@@ -55,7 +55,8 @@ void check_window(const Case& c, Findings& found) {
   const double plate = c.splitter.edge ? (*c.splitter.edge)[0] : c.splitter.distance;
   if (m.along[1] >= plate - m.plate_error[0])
     found.error("map.along", fmt::format("the window reaches to the plate, {} behind the jet", mm(plate)),
-                "places between the belt and the plate");
+                "places between the belt and the plate",
+                fmt::format("along = [\"{}\", \"{}\"]", mm(-0.5 * plate), mm(0.5 * plate)));
   const auto box = grid_box(c);
   if (!box || c.flow.solver == FlowSolver::none) return;
   const Vec3 half = half_extent(c.bodies[mapped_body(c)]);
@@ -64,7 +65,8 @@ void check_window(const Case& c, Findings& found) {
     found.error("map.across",
                 fmt::format("at its ends the body leaves the box, which is from {} to {} beside the jet",
                             mm(-left), mm(right)),
-                "a window within the box, or a wider box");
+                "a window within the box, or a wider box",
+                fmt::format("across = [\"{}\", \"{}\"]", mm(half.y() - left), mm(right - half.y())));
   if (c.valve.shape == ValveShape::trace) return;
   // Where the centre may be while the jet blows, over the whole window.
   const double v = c.launch.belt_speed, begins = c.valve.opens_at + c.valve.delay,
@@ -101,12 +103,13 @@ void sense_map(const Case& c, Findings& found) {
     found.error("map.size_factor", "the sizes end below where they begin",
                 "the smallest, then the largest factor", "size_factor = [0.8, 1.2]");
   if (c.map.lying != MapLying::given && c.bodies[body].shape == ShapeKind::sphere)
-    found.error("map.lying", "a sphere lies the same, however it is turned", "nothing, or another shape");
+    found.error("map.lying", "a sphere lies the same, however it is turned", "nothing, or another shape",
+                "lying = \"given\"");
   if (c.map.max_fine_runs > c.map.max_runs)
     found.error("map.max_fine_runs", "more fine runs than runs", "at most map.max_runs",
                 "max_fine_runs = 15");
   if (c.bodies[body].copies > 1)
-    found.error("map.body", "copies of the body are on the belt too", "a body without copies");
+    found.error("map.body", "copies of the body are on the belt too", "a body without copies", "copies = 1");
 }
 
 }  // namespace ejecta

@@ -46,10 +46,12 @@ void check_path(const Case& c, const BodySpec& b, const std::string& key, Findin
     return found.error(path_key, "only a prescribed body follows a path", "motion = \"prescribed\"",
                        "motion = \"prescribed\"");
   if (!b.velocity.isZero() || !b.spin.isZero() || b.velocity_formula || b.spin_formula)
-    return found.error(path_key, "the path gives the velocity already", "either path, or velocity and spin");
+    return found.error(path_key, "the path gives the velocity already", "either path, or velocity and spin",
+                       fmt::format("path = \"{}\"", b.path));
   if (b.release_at > 0.0 || b.enters_at || b.copies > 1)
     return found.error(path_key, "the path says where the body is at all times of the run",
-                       "no release_at, enters_at or copies; equal places in the path where it rests");
+                       "no release_at, enters_at or copies; equal places in the path where it rests",
+                       fmt::format("path = \"{}\"", b.path));
   std::error_code ignored;
   const std::string file = beside_case(c, b.path);
   if (!std::filesystem::is_regular_file(file, ignored))
@@ -70,7 +72,9 @@ void check_path(const Case& c, const BodySpec& b, const std::string& key, Findin
         path_key,
         fmt::format("the path is from {} to {}, the run from 0 to {}", format_quantity(from, Dimension::time),
                     format_quantity(to, Dimension::time), format_quantity(c.run.end_time, Dimension::time)),
-        "a path for the whole run; where the body rests, the same place twice");
+        "a path for the whole run; where the body rests, the same place twice",
+        from > 0.0 ? "time [ms], x [mm], y [mm], z [mm]: the first row at 0"
+                   : fmt::format("[run] end_time = \"{}\"", format_quantity(to, Dimension::time)));
 }
 
 }  // namespace

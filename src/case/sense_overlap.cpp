@@ -108,7 +108,7 @@ void check_belt(const Case& c, Findings& found) {
       for (std::size_t steps = 0; next && !next->behind.empty(); ++steps) {
         if (steps > c.bodies.size()) {
           found.error(key + ".behind", fmt::format("\"{}\" would go behind itself", b.name),
-                      "a first body without `behind`");
+                      "a first body without `behind`", "along = \"-26 mm\"");
           break;
         }
         const auto after = named(next->behind);
@@ -144,11 +144,14 @@ void sense_overlaps(const Case& c, Findings& found) {
       const auto comes_later = [](const BodySpec& b) { return b.enters_at || b.copies > 1; };
       if (comes_later(c.bodies[i]) || comes_later(c.bodies[j])) continue;
       const double depth = overlap(solids[i], solids[j]);
+      Vec3 apart = c.bodies[i].position;  // beyond the reach of both, however they are turned
+      apart.z() =
+          c.bodies[j].position.z() + half_extent(c.bodies[i]).norm() + half_extent(c.bodies[j]).norm();
       if (depth > allowed * std::min(smallest_radius(solids[i]), smallest_radius(solids[j])))
         found.error(fmt::format("body.{}.position", i),
                     fmt::format("\"{}\" overlaps \"{}\" by {:.3g} mm at the start", c.bodies[i].name,
                                 c.bodies[j].name, 1e3 * depth),
-                    "bodies apart from each other");
+                    "bodies apart from each other", place_line("position", apart));
     }
 }
 

@@ -61,14 +61,17 @@ void sense_records(const Case& c, Findings& found) {
   if (c.flow.solver == FlowSolver::none) {
     for (const auto& [count, section] :
          {std::pair{c.probes.size(), "probe.0"}, {c.lines.size(), "line.0"}, {c.slices.size(), "slice.0"}})
-      if (count > 0) found.error(section, "without a flow there is nothing to record", "a flow solver");
+      if (count > 0)
+        found.error(section, "without a flow there is nothing to record", "a flow solver",
+                    "[flow] solver = \"incompressible\"");
     return;
   }
   check_fields(c, found);
   if (!box) return;
   const auto inside = [&](const std::string& key, const Vec3& p, const char* what) {
     if (!box->contains(p))
-      found.error(key, fmt::format("{} lies outside the computed box", what), "a point inside [grid]");
+      found.error(key, fmt::format("{} lies outside the computed box", what), "a point inside [grid]",
+                  place_line(key.substr(key.rfind('.') + 1), p.cwiseMax(box->low).cwiseMin(box->high)));
   };
   for (std::size_t n = 0; n < c.probes.size(); ++n)
     inside(fmt::format("probe.{}.position", n), c.probes[n].position, "the probe");
@@ -76,13 +79,16 @@ void sense_records(const Case& c, Findings& found) {
     inside(fmt::format("line.{}.from", n), c.lines[n].from, "this end of the line");
     inside(fmt::format("line.{}.to", n), c.lines[n].to, "this end of the line");
     if (c.lines[n].from == c.lines[n].to)
-      found.error(fmt::format("line.{}.to", n), "a line without length", "two different ends");
+      found.error(fmt::format("line.{}.to", n), "a line without length", "two different ends",
+                  place_line("to", box->high));
   }
   for (std::size_t n = 0; n < c.slices.size(); ++n) {
     const SliceSpec& s = c.slices[n];
     if (s.position < box->low[s.axis] || s.position > box->high[s.axis])
       found.error(fmt::format("slice.{}.position", n), "the slice does not cut the computed box",
-                  "a position inside [grid]");
+                  "a position inside [grid]",
+                  fmt::format("position = \"{}\"",
+                              format_quantity(0.5 * (box->low + box->high)[s.axis], Dimension::length)));
   }
 }
 

@@ -62,8 +62,11 @@ void check_placing(const Case& c, Findings& found) {
   Case other = c;
   for (const Vec3& nozzle : c.jet.more_nozzles) {
     other.jet.nozzle = nozzle;
+    const Vec3 along = c.jet.direction.normalized();
+    const Vec3 in_plane = nozzle - along.dot(nozzle - c.jet.nozzle) * along;
     if (std::abs(jet_height(other) - jet_height(c)) > 1e-6 * std::abs(jet_height(c)) + 1e-9)
-      found.error("jet.more_nozzles", "the orifices are not at one distance from the face", "one plane");
+      found.error("jet.more_nozzles", "the orifices are not at one distance from the face", "one plane",
+                  fmt::format("more_nozzles = [{}]", place_line("", in_plane).substr(3)));
   }
   if (c.jet.kind == JetKind::computed && jet_height(c) <= 0.0)
     found.error("jet.nozzle", "the face through which the jet enters does not lie ahead of its orifice",
@@ -86,7 +89,7 @@ void sense_sorter(const Case& c, Findings& found) {
   else if (v.shape == ValveShape::trace &&
            !std::filesystem::is_regular_file(beside_case(c, v.trace), ignored))
     found.error("valve.trace", fmt::format("there is no file \"{}\"", beside_case(c, v.trace)),
-                "a file, relative to the folder of the case");
+                "a file, relative to the folder of the case", "trace = \"opening.csv\"");
   if (has_jet(c)) {
     if (v.shape != ValveShape::trace && v.duration <= 0.0)
       found.error("valve.duration", "the valve never opens", "a time, more than 0", "duration = \"8 ms\"");

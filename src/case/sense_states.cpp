@@ -11,13 +11,14 @@
 #include "case/schema.hpp"
 
 /// What states of faces and regions say: k and epsilon not below nothing, of a gas pressure, density and
-/// temperature above it. They must make sense at the start; later the solver takes turbulence below nothing
-/// for still air.
+/// temperature above it. They must make sense at the start and be numbers at any time of the run; later the
+/// solver takes turbulence below nothing for still air.
 namespace ejecta {
 namespace {
 
 // Along each axis: a formula that is wrong between so many places is not found, but the check stays quick.
-constexpr std::size_t kLooksAtFace = 400, looks_at_region = 64;
+constexpr std::size_t kLooksAtFace = 400, looks_at_region = 64, kLooksLater = 12;
+constexpr int kLaterTimes = 16;
 
 using Points = std::array<std::vector<double>, 3>;
 using Inside = std::function<bool(const Vec3&)>;
@@ -29,8 +30,22 @@ struct Allowed {
   std::string expected, example;
 };
 
-void check_formula(const std::string& key, const std::optional<std::string>& text, const Points& at,
-                   const Inside& inside, const Allowed& allowed, Findings& found) {
+std::vector<double> thinned(const std::vector<double>& all, std::size_t most_looks) {
+  const std::size_t step = (all.size() + most_looks - 1) / most_looks;
+  std::vector<double> some;
+  for (std::size_t n = 0; n < all.size(); n += std::max<std::size_t>(step, 1)) some.push_back(all[n]);
+  return some;
+}
+
+/// Where and until when (s) a state holds; of a region: at the start alone.
+struct Extent {
+  Points at;
+  Inside inside;
+  double until = 0.0;
+};
+
+void check_formula(const std::string& key, const std::optional<std::string>& text, const Extent& extent,
+                   const Allowed& allowed, Findings& found) {
   if (!text) return;
   const Expression formula(*text);
   const auto good = [&](double value) {
@@ -44,44 +59,55 @@ void check_formula(const std::string& key, const std::optional<std::string>& tex
       found.error(key, fmt::format("there is none of {}", words(value)), allowed.expected, allowed.example);
     return;
   }
-  for (const double z : at[2])
-    for (const double y : at[1])
-      for (const double x : at[0]) {
-        if (!inside({x, y, z})) continue;
-        const double value = formula(x, y, z, 0.0);
-        if (good(value)) continue;
-        return found.error(
-            key,
-            fmt::format("the formula gives {} at x, y, z = {:.4g}, {:.4g}, {:.4g} mm at the start",
-                        words(value), 1e3 * x, 1e3 * y, 1e3 * z),
-            allowed.expected, allowed.example);
-      }
+  /// Whether all is well at that time; what is not is told.
+  const auto look = [&](double t, const Points& at) {
+    for (const double z : at[2])
+      for (const double y : at[1])
+        for (const double x : at[0]) {
+          if (!extent.inside({x, y, z})) continue;
+          const double value = formula(x, y, z, t);
+          if (good(value) || (t > 0.0 && allowed.zero && std::isfinite(value))) continue;
+          found.error(key,
+                      fmt::format("the formula gives {} at x, y, z = {:.4g}, {:.4g}, {:.4g} mm {}",
+                                  words(value), 1e3 * x, 1e3 * y, 1e3 * z,
+                                  t > 0.0 ? fmt::format("at t = {}", format_quantity(t, Dimension::time))
+                                          : "at the start"),
+                      allowed.expected, allowed.example);
+          return false;
+        }
+    return true;
+  };
+  if (!look(0.0, extent.at) || !formula.uses_time()) return;
+  Points fewer;
+  for (std::size_t a = 0; a < 3; ++a) fewer[a] = thinned(extent.at[a], kLooksLater);
+  for (int n = 1; n <= kLaterTimes; ++n)
+    if (!look(extent.until * n / kLaterTimes, fewer)) return;
 }
 
-void check_state(const Case& c, const std::string& key, const StateSpec& state, const Points& at,
-                 const Inside& inside, Findings& found) {
+void check_state(const Case& c, const std::string& key, const StateSpec& state, const Extent& extent,
+                 Findings& found) {
   if (state.velocity)
     for (const std::string& component : *state.velocity)
-      check_formula(key + ".velocity", component, at, inside,
+      check_formula(key + ".velocity", component, extent,
                     {true, true, "a number everywhere; max(0, ...) keeps a root or logarithm in its range",
                      "velocity = [\"= 10 * sqrt(max(0, 1 - (y/0.02)^2))\", \"0\", \"0\"]"},
                     found);
   if (c.flow.solver == FlowSolver::incompressible)
-    check_formula(key + ".pressure", state.pressure, at, inside,
+    check_formula(key + ".pressure", state.pressure, extent,
                   {true, true, "a number everywhere", "pressure = \"0 Pa gauge\""}, found);
   if (c.flow.turbulence != TurbulenceModel::laminar) {
     const Allowed eddies{true, false, "nothing below 0 there; max(0, ...) cuts it off",
                          "k = \"= max(0, 0.1 * (1 - (x/0.02)^2))\""};
-    check_formula(key + ".k", state.k, at, inside, eddies, found);
-    check_formula(key + ".epsilon", state.epsilon, at, inside, eddies, found);
+    check_formula(key + ".k", state.k, extent, eddies, found);
+    check_formula(key + ".epsilon", state.epsilon, extent, eddies, found);
   }
   if (c.flow.solver == FlowSolver::incompressible) return;
-  check_formula(key + ".pressure", state.pressure, at, inside,
+  check_formula(key + ".pressure", state.pressure, extent,
                 {false, false, "a gas has a pressure above 0, absolute", "pressure = \"1 bar absolute\""},
                 found);
-  check_formula(key + ".density", state.density, at, inside,
+  check_formula(key + ".density", state.density, extent,
                 {false, false, "a gas has a density above 0", "density = \"1.2 kg/m3\""}, found);
-  check_formula(key + ".temperature", state.temperature, at, inside,
+  check_formula(key + ".temperature", state.temperature, extent,
                 {false, false, "a gas has a temperature above 0 K", "temperature = \"300 K\""}, found);
 }
 
@@ -152,13 +178,6 @@ void check_gas(const Case& c, Findings& found) {
         "solver = \"compressible\"");
 }
 
-std::vector<double> thinned(const std::vector<double>& all, std::size_t most_looks) {
-  const std::size_t step = (all.size() + most_looks - 1) / most_looks;
-  std::vector<double> some;
-  for (std::size_t n = 0; n < all.size(); n += std::max<std::size_t>(step, 1)) some.push_back(all[n]);
-  return some;
-}
-
 }  // namespace
 
 void sense_states(const Case& c, Findings& found) {
@@ -174,12 +193,12 @@ void sense_states(const Case& c, Findings& found) {
     const int normal = static_cast<int>(f / 2);
     Points at = cells;
     at[f / 2] = {f % 2 ? box->high[normal] : box->low[normal]};
-    check_state(c, key, face.state, at, everywhere, found);
+    check_state(c, key, face.state, {at, everywhere, c.run.end_time}, found);
     for (std::size_t n = 0; n < face.patches.size(); ++n) {
       const PatchSpec& p = face.patches[n];
       const std::string patch_key = fmt::format("{}.patch.{}", key, n);
-      check_state(
-          c, patch_key, p.state, at, [&](const Vec3& x) { return (x - p.centre).norm() <= p.radius; }, found);
+      const auto on_disc = [&](const Vec3& x) { return (x - p.centre).norm() <= p.radius; };
+      check_state(c, patch_key, p.state, {at, on_disc, c.run.end_time}, found);
     }
   }
   for (std::vector<double>& along : cells) along = thinned(along, looks_at_region);
@@ -191,7 +210,7 @@ void sense_states(const Case& c, Findings& found) {
       const Vec3 high = (*region.box)[0].cwiseMax((*region.box)[1]);
       return Box{low, high}.contains(x);
     };
-    check_state(c, fmt::format("initial.{}", n), region.state, cells, inside, found);
+    check_state(c, fmt::format("initial.{}", n), region.state, {cells, inside}, found);
   }
 }
 

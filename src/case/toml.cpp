@@ -203,6 +203,7 @@ Node parse_toml(std::shared_ptr<const Source> source, std::vector<Problem>& prob
     problems.push_back(
         {.what = "nested too deeply",
          .expected = fmt::format("at most {} brackets and {} points in each other", kMaxBrackets, kMaxDots),
+         .example = R"(position = ["0 mm", "0 mm", "5 mm"])",
          .place = {source, where, 1}});
     return empty;
   }

@@ -10,13 +10,15 @@
 
 #include "base/error.hpp"
 #include "base/random.hpp"
+#include "case/load.hpp"
+#include "case/size_distribution.hpp"
 
 namespace ejecta {
 namespace {
 
 constexpr std::uint64_t kSizes = 1, kPlaces = 2;  // streams of random numbers
 constexpr int kTries = 2000;                      // of a grain that looks for its place
-constexpr double kLargestSpread = 3.0;            // standard deviations of a lognormal size
+constexpr double kRarest = 0.00135;               // beyond three standard deviations none is drawn
 
 /// The key that says how many there are.
 std::string amount_of(const GrainsSpec& g) {
@@ -32,30 +34,22 @@ InputError no_room(const GrainsSpec& g, const std::string& what) {
 
 double volume_of(double d) { return std::numbers::pi / 6 * d * d * d; }
 
-/// The n-th diameter, m.
-double draw_size(const GrainsSpec& g, const CounterRandom& random, std::uint64_t n) {
-  switch (g.sizes) {
-    case SizeLaw::uniform:
-      return g.size + (g.size_to - g.size) * random.uniform(n);
-    case SizeLaw::lognormal:
-      return g.size * std::exp(g.spread * std::clamp(random.normal(n), -kLargestSpread, kLargestSpread));
-    default:
-      return g.size;
-  }
-}
-
-std::vector<double> draw_sizes(const GrainsSpec& g, double density) {
+std::vector<double> draw_sizes(const GrainsSpec& g, double density, const std::string& folder) {
   const CounterRandom random(static_cast<std::uint64_t>(g.seed), kSizes);
+  const SizeDistribution distribution = size_distribution(g, folder);
+  const auto draw = [&](std::size_t n) {
+    return distribution.quantile(std::clamp(random.uniform(n), kRarest, 1.0 - kRarest));
+  };
   std::vector<double> sizes;
   if (g.count > 0) {
-    for (int n = 0; n < g.count; ++n) sizes.push_back(draw_size(g, random, static_cast<std::uint64_t>(n)));
+    for (std::size_t n = 0; n < static_cast<std::size_t>(g.count); ++n) sizes.push_back(draw(n));
     return sizes;
   }
   const double room = ((*g.region)[1] - (*g.region)[0]).prod();
   const double wanted = g.mass ? *g.mass / density : *g.solids_fraction * room;
   // The last one is taken where that brings the sum nearer.
   for (double sum = 0;;) {
-    const double d = draw_size(g, random, sizes.size()), v = volume_of(d);
+    const double d = draw(sizes.size()), v = volume_of(d);
     if (sum + 0.5 * v > wanted) return sizes;
     sum += v;
     sizes.push_back(d);
@@ -186,15 +180,15 @@ class RandomPlaces {
   std::uint64_t next_ = 0;
 };
 
-void add_group(const GrainsSpec& g, const Particles& particles, std::vector<Body>& made) {
+void add_group(const GrainsSpec& g, const std::string& folder, const Particles& particles,
+               std::vector<Body>& made) {
   const int material = particles.materials().index(g.material);
   const double density = g.density.value_or(particles.materials().spec(material).density);
-  const std::vector<double> sizes = draw_sizes(g, density);
+  const std::vector<double> sizes = draw_sizes(g, density, folder);
   if (sizes.empty())
-    throw InputError(fmt::format("grains \"{}\": not even one makes up what is asked for", g.name),
-                     {.key = amount_of(g),
-                      .expected = "more of them, or smaller ones",
-                      .example = fmt::format("size = \"{:.2g} mm\"", 1e2 * g.size)});
+    throw InputError(
+        fmt::format("grains \"{}\": not even one makes up what is asked for", g.name),
+        {.key = amount_of(g), .expected = "more of them, or smaller ones", .example = "count = 100"});
   const double largest = *std::max_element(sizes.begin(), sizes.end());
   const CounterRandom random(static_cast<std::uint64_t>(g.seed), kPlaces);
   std::vector<Vec3> places;
@@ -242,7 +236,7 @@ void add_group(const GrainsSpec& g, const Particles& particles, std::vector<Body
 
 void add_grains(const Case& c, Particles& particles) {
   std::vector<Body> made;
-  for (const GrainsSpec& g : c.grains) add_group(g, particles, made);
+  for (const GrainsSpec& g : c.grains) add_group(g, folder_of(c), particles, made);
   for (Body& body : made) particles.add(std::move(body));
 }
 

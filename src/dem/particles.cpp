@@ -68,6 +68,7 @@ void Particles::advance(double dt, std::span<const Load> loads) {
   enter_and_leave();
   const int steps = std::max(1, static_cast<int>(std::ceil(dt / stable_dt() * (1 - 1e-12))));
   const double start = time_, step = dt / steps;
+  note_leaps(step);
   pack_spheres();
   int left = pieces_of(step);
   double now = step / left;
@@ -87,6 +88,15 @@ void Particles::advance(double dt, std::span<const Load> loads) {
   }
   unpack_spheres();
   require_paid_for();
+}
+
+/// Balls set no limit to the step (population.cpp, note_size): that they may have passed through each other
+/// unseen is told at the end.
+void Particles::note_leaps(double step) {
+  if (bodies_.size() < 2) return;
+  for (std::size_t n = 0; n < bodies_.size(); ++n)
+    if (presence_[n] == Presence::here && bodies_[n].shape.balls().size() == 1)
+      leap_ = std::max(leap_, 0.5 * step * bodies_[n].velocity.norm() / bodies_[n].shape.bounding_radius());
 }
 
 /// What contacts have given beyond what they took comes from nowhere: of what went through them no more than

@@ -141,6 +141,7 @@ class Particles {
   void require_clear(const Dent& dent, const char* when) const;
   [[noreturn]] void throw_diverged() const;
   void require_paid_for() const;
+  void note_leaps(double step);
 
   Vec3 gravity_;
   Materials materials_;
@@ -203,6 +204,7 @@ class Particles {
   DemTimes times_;
   double contact_work_ = 0.0, outer_work_ = 0.0;  // J
   double exchanged_ = 0.0;                        // J, that went into contacts and out of them
+  double leap_ = 0.0;  // the farthest that a ball has come in a contact step, in diameters
 };
 
 /// Bodies, materials, walls and contact law of a case. Refuses bodies that overlap and steps that are too

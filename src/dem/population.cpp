@@ -7,6 +7,7 @@
 #include "base/error.hpp"
 #include "base/state_reader.hpp"
 #include "case/load.hpp"
+#include "case/problem.hpp"
 #include "dem/particles.hpp"
 #include "dem/rotation.hpp"
 #include "dem/time_step.hpp"
@@ -21,6 +22,7 @@ constexpr int kFresh = 6;  // likewise
 
 constexpr double kTouching = 1e-3;  // of the size: bodies that overlap less only touch
 constexpr double kDeepDent = 0.1;   // of the smallest width
+constexpr double kFarLeap = 0.5;    // diameters; two such balls pass each other in one step
 
 void append(std::vector<double>& out, const Vec3& v) { out.insert(out.end(), v.data(), v.data() + 3); }
 
@@ -180,7 +182,9 @@ void Particles::require_clear(const Dent& dent, const char* when) const {
                   "{:.3f}, {:.3f})",
                   bodies_[static_cast<std::size_t>(dent.body)].name, dent.other < 0 ? "wall" : "body", other,
                   1e3 * dent.overlap, when, dent.normal.x(), dent.normal.y(), dent.normal.z()),
-      {.expected = "bodies and walls that are apart when the run starts"});
+      {.expected = "bodies and walls that are apart when the run starts",
+       .example = place_line("position", bodies_[static_cast<std::size_t>(dent.body)].position +
+                                             1.01 * dent.overlap * dent.normal)});
 }
 
 void Particles::require_apart() {
@@ -215,6 +219,11 @@ std::vector<std::string> Particles::warnings() const {
                     "deep are not to be trusted; a larger youngs_modulus makes them shallower",
                     bodies_[n].name, 1e3 * peaks_[n].overlap, 100 * share, 1e3 * width));
   }
+  if (leap_ > kFarLeap)
+    sentences.push_back(fmt::format(
+        "a ball moved by {:.2g} of its diameters in one step of contacts: some may have passed through each "
+        "other unseen; a larger youngs_modulus or a smaller contact.time_step_fraction makes steps shorter",
+        leap_));
   return sentences;
 }
 
@@ -261,7 +270,8 @@ std::vector<double> Particles::state() const {
                         power_.into_contacts,
                         power_.from_outside,
                         asked_rate_,
-                        exchanged_};
+                        exchanged_,
+                        leap_};
   for (std::size_t n = 0; n < bodies_.size(); ++n) {
     const Body& b = bodies_[n];
     append(s, b.position);
@@ -290,6 +300,7 @@ void Particles::restore(std::span<const double> s) {
   power_.from_outside = in.number();
   asked_rate_ = in.number();
   exchanged_ = in.number();
+  leap_ = in.number();
   for (std::size_t n = 0; n < bodies_.size(); ++n) {
     Body& b = bodies_[n];
     b.position = in.vec3();

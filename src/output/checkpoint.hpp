@@ -15,7 +15,7 @@
 /// is reported as such and never parsed. Other programs open the file as plain HDF5.
 namespace ejecta::output {
 
-inline constexpr std::uint32_t kCheckpointVersion = 5;
+inline constexpr std::uint32_t kCheckpointVersion = 6;
 
 /// Where the clock stood.
 struct CheckpointTime {

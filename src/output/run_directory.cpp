@@ -19,6 +19,8 @@ constexpr std::array kContents{"case.toml",    "result.json",  "progress.json", 
                                "replay.jsonl", "figures.json", "fields",        "checkpoints",
                                "report.html",  "view.py",      "manifest.json"};
 
+constexpr const char* kEarlier = "earlier";
+
 [[noreturn]] void refuse(const fs::path& path, const std::error_code& why) {
   throw InputError(fmt::format("cannot write the run directory {}: {} (choose another place with --out DIR)",
                                path.string(), why.message()));
@@ -45,7 +47,7 @@ void RunDirectory::require_creatable(const fs::path& path, bool force) {
   if (fs::exists(path, failed)) {
     if (!fs::is_directory(path))
       throw InputError(fmt::format("{} is a file; a run needs a directory", path.string()));
-    const bool is_run = fs::exists(path / "manifest.json");
+    const bool is_run = fs::exists(path / "manifest.json") || fs::exists(path / kEarlier / "manifest.json");
     const bool is_empty = holds_no_file(path, "manifest.json", failed);
     if (failed) refuse(path, failed);
     if (is_run && !force)
@@ -62,11 +64,23 @@ void RunDirectory::require_creatable(const fs::path& path, bool force) {
 RunDirectory RunDirectory::create(const fs::path& path, bool force) {
   require_creatable(path, force);
   std::error_code failed;
+  const auto checked = [&] {
+    if (failed) refuse(path, failed);
+  };
   if (fs::exists(path, failed)) {
+    const fs::path aside = path / kEarlier;
+    const bool finished = fs::exists(path / "result.json");
+    if (finished) {
+      fs::remove_all(aside, failed);
+      checked();
+      fs::create_directory(aside, failed);
+      checked();
+    }
     for (const char* name : kContents) {
       fs::remove(path / (std::string(name) + ".tmp"), failed);
-      fs::remove_all(path / name, failed);
-      if (failed) refuse(path, failed);
+      if (finished && fs::exists(path / name)) fs::rename(path / name, aside / name, failed);
+      else fs::remove_all(path / name, failed);
+      checked();
     }
   }
   for (const char* name : {"history", "fields", "checkpoints"}) {
@@ -89,6 +103,17 @@ RunDirectory RunDirectory::open(const fs::path& path) {
 
 fs::path RunDirectory::history(std::string_view name) const {
   return path_ / "history" / fmt::format("{}.csv", name);
+}
+
+void RunDirectory::forget_earlier() const {
+  std::error_code none;
+  fs::remove_all(path_ / kEarlier, none);
+}
+
+std::optional<fs::path> RunDirectory::earlier() const {
+  std::error_code none;
+  if (!fs::exists(path_ / kEarlier, none)) return std::nullopt;
+  return path_ / kEarlier;
 }
 
 void RunDirectory::write_case(std::string_view toml) const { write_file(path_ / "case.toml", toml); }

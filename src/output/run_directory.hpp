@@ -1,6 +1,7 @@
 #pragma once
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -30,8 +31,8 @@ class RunDirectory {
   /// CASE.run beside the working directory, for "cases/x.toml": "x.run".
   static std::filesystem::path default_path(const std::filesystem::path& case_path);
   /// Makes an empty run directory. Throws InputError when `path` holds a run already and `force` is not set,
-  /// when it holds anything that is not a run, or when it cannot be made or written. With `force` only files
-  /// of a run are removed.
+  /// when it holds anything that is not a run, or when it cannot be made or written. With `force` a finished
+  /// run is put aside in earlier/, until forget_earlier(); of an unfinished one its files are removed.
   static RunDirectory create(const std::filesystem::path& path, bool force);
   /// Throws what create() would throw and changes nothing: for those who want to know before long work, and
   /// must not lose a run to a case that then cannot start.
@@ -46,6 +47,10 @@ class RunDirectory {
   std::filesystem::path replay() const { return path_ / "replay.jsonl"; }
   std::filesystem::path figures() const { return path_ / "figures.json"; }
   std::filesystem::path progress() const { return path_ / "progress.json"; }
+
+  /// Of the run that stood here before this one: to be called when this one is finished.
+  void forget_earlier() const;
+  std::optional<std::filesystem::path> earlier() const;  ///< where it is, if it is there
 
   void write_case(std::string_view toml) const;
   void write_manifest(const nlohmann::ordered_json& manifest) const;

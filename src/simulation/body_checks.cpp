@@ -41,6 +41,7 @@ std::string mm_or_m(double length) {
 }
 
 /// The key that names the surface of a body, behind "body.0".
+constexpr const char* kFileExample = "file = \"lump.stl\"";
 constexpr const char* kClosedSurface = "a closed surface as STL, text or binary, whose normals look outwards";
 
 std::string file_key(const BodySpec& b) {
@@ -86,7 +87,9 @@ class BodyCheck {
                           axis_names[static_cast<std::size_t>(d)], mm_or_m(size), mm_or_m(room)),
               millimetres ? "a larger [grid] or a smaller body; is the file in mm? Then scale = 0.001"
                           : "a larger [grid] or a smaller body",
-              millimetres ? "scale = 0.001" : "");
+              millimetres ? "scale = 0.001"
+                          : fmt::format("[grid.{0}] points = [\"-{1}\", \"{1}\"]",
+                                        axis_names[static_cast<std::size_t>(d)], mm_or_m(size)));
       return true;
     }
     return false;
@@ -101,9 +104,21 @@ class BodyCheck {
         fmt::format("x in {} to {}, y in {} to {}, z in {} to {}", mm_or_m(low[0]), mm_or_m(high[0]),
                     mm_or_m(low[1]), mm_or_m(high[1]), mm_or_m(low[2]), mm_or_m(high[2]));
     if (spec_.on_belt || body_.motion == Motion::fixed)
-      problem(Severity::error, place_key_, what + ": no air would ever reach it", expected);
-    else problem(Severity::warning, place_key_, what + ": no air reaches it before it enters", expected);
+      problem(Severity::error, place_key_, what + ": no air would ever reach it", expected,
+              placed(0.5 * (low + high)));
+    else
+      problem(Severity::warning, place_key_, what + ": no air reaches it before it enters", expected,
+              placed(0.5 * (low + high)));
     return true;
+  }
+
+  /// A line that brings the body there, on its path as it crosses the jet's axis.
+  std::string placed(const Vec3& place) const {
+    if (!spec_.on_belt) return place_line("position", place);
+    const Vec3 moved = place - at_;
+    if (moved.z() != 0.0)
+      return fmt::format("stand_off = \"{}\"", mm_or_m(case_.launch.stand_off + moved.z()));
+    return fmt::format("across = \"{}\"", mm_or_m(spec_.across + moved.y()));
   }
 
   bool lets_air_in(const BoundarySpec& face) const {
@@ -129,11 +144,12 @@ class BodyCheck {
     const bool held = body_.motion != Motion::free;
     if (wall && depth <= kRest * body_.shape.bounding_radius()) return;
     const std::string inside = fmt::format("a place at least {} further in", mm_or_m(depth));
+    const std::string example = placed(at_ + (face % 2 ? -1.0 : 1.0) * depth * Vec3::Unit(d));
     if (lets_air_in(spec) && !goes_on)
       problem(Severity::error, place_key_,
               fmt::format("the body sticks {} out of the box through {}, where air flows in", mm_or_m(depth),
                           name),
-              inside);
+              inside, example);
     else if (spec_.on_belt && !goes_on)
       problem(
           Severity::error,
@@ -144,26 +160,28 @@ class BodyCheck {
               "the domain is too small for the path: the body sticks {} out of the box through {} where it "
               "crosses the jet's axis",
               mm_or_m(depth), name),
-          "a larger [grid] or a path nearer to the jet");
+          "a larger [grid] or a path nearer to the jet", example);
     else if (wall && !held)
       problem(Severity::error, place_key_,
-              fmt::format("the body starts {} inside the wall {}", mm_or_m(depth), name), inside);
+              fmt::format("the body starts {} inside the wall {}", mm_or_m(depth), name), inside, example);
     else if (!goes_on && !wall)
       problem(Severity::warning, place_key_,
               fmt::format("the body starts {} outside the box through {}: air acts on the part inside alone",
                           mm_or_m(depth), name),
-              inside);
+              inside, example);
   }
 
   void resolved() {
     const Resolution r = resolution_of(grid_, body_, at_);
     const std::string what = resolution_words(r, body_);
+    const std::string finer =
+        fmt::format("[grid] refinement = {:.1f}", case_.grid.refinement * kCellsAdvised / r.cells + 0.05);
     if (r.cells < kCellsNeeded * kRounding)
       problem(Severity::error, key_, what + ": the air's force on it would be wrong",
-              fmt::format("at least {}, better {}", kCellsNeeded, kCellsAdvised));
+              fmt::format("at least {}, better {}", kCellsNeeded, kCellsAdvised), finer);
     else if (r.cells < kCellsAdvised * kRounding)
       problem(Severity::warning, key_, what,
-              fmt::format("at least {} for results that do not depend on the grid", kCellsAdvised));
+              fmt::format("at least {} for results that do not depend on the grid", kCellsAdvised), finer);
   }
 
   const Case& case_;
@@ -214,7 +232,10 @@ void add_refusal(const Case& c, const InputError& refusal, std::vector<Problem>&
   found.push_back({.key = key,
                    .what = what,
                    .expected = file ? "a surface as STL, text or binary" : refusal.advice.expected,
-                   .example = refusal.advice.example});
+                   .example = file ? kFileExample
+                              : key.ends_with(".on_belt")
+                                  ? "behind = \"name of the body ahead\", gap = \"12 mm\""
+                                  : refusal.advice.example});
 }
 
 /// Valve traces and measured curves that cannot be read.
@@ -300,7 +321,7 @@ std::vector<Body> bodies_one_by_one(const Case& c, std::vector<Problem>& found) 
             {.key = fmt::format("body.{}{}", n, a.key.empty() ? file_key(c.bodies[n]) : "." + a.key),
              .what = e.what(),
              .expected = file ? kClosedSurface : a.expected,
-             .example = a.example});
+             .example = file ? kFileExample : a.example});
       }
     }
   } catch (const InputError& e) {

@@ -123,6 +123,7 @@ std::optional<ordered_json> sweep_jet(const Case& original, const Context& conte
   figures.add(std::move(lines));
   figures.write(directory.figures());
   directory.write_result(result);
+  directory.forget_earlier();
   if (c.output.report) output::write_report(directory.path());
   return result;
 }

@@ -1,10 +1,13 @@
 #include "simulation/run.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <memory>
 
 #include "base/clock.hpp"
+#include "base/error.hpp"
 #include "base/stopwatch.hpp"
 #include "base/thread_budget.hpp"
 #include "case/extent.hpp"
@@ -43,6 +46,18 @@ class Run {
     checkpoints_.done(clock_.time());
   }
 
+  Result to_end() {
+    try {
+      return advance_to_end();
+    } catch (const DivergedError&) {
+      const auto earlier = archive_ ? archive_->directory().earlier() : std::nullopt;
+      if (earlier && context_.note)
+        context_.note(fmt::format("the run that stood there before is kept in {}", earlier->string()));
+      throw;
+    }
+  }
+
+ private:
   Result advance_to_end() {
     start_ = wall_seconds() - wall_before_;
     last_checkpoint_ = wall_seconds();
@@ -63,7 +78,6 @@ class Run {
     return conclude();
   }
 
- private:
   bool finished() const { return clock_.time() >= case_.run.end_time * (1.0 - 1e-12) || model_->finished(); }
   bool stopped() const { return context_.stop && context_.stop(); }
 
@@ -134,6 +148,7 @@ class Run {
     if (archive_) {
       if (r.end == RunEnd::undecided) write_checkpoint();  // from which a later end goes on
       archive_->directory().write_result(r.quantities);
+      archive_->directory().forget_earlier();
       if (case_.output.report) output::write_report(archive_->directory().path());
     }
     if (context_.note)
@@ -162,7 +177,7 @@ Result run(const Case& c, const Context& context) {
   const auto outputs = [&, &m = *model](const OutputPlace& place) {
     return std::make_unique<CoupledOutputs>(c, m, place, context.keep_histories);
   };
-  return Run(c, context, std::move(model), outputs).advance_to_end();
+  return Run(c, context, std::move(model), outputs).to_end();
 }
 
 bool is_jet_case(const Case& c) {
@@ -184,7 +199,7 @@ Result run_jet(const Case& c, double kept_at, const Context& context) {
   const auto outputs = [&m = *model](const OutputPlace& place) {
     return std::make_unique<JetOutputs>(m, place);
   };
-  return Run(c, context, std::move(model), outputs).advance_to_end();
+  return Run(c, context, std::move(model), outputs).to_end();
 }
 
 std::optional<Result> finished_run(const Case& c, const std::filesystem::path& directory) {

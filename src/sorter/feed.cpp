@@ -279,12 +279,11 @@ std::vector<Problem> check_feed(const Case& c) {
     try {
       classes.emplace_back(c.classes[k], folder_of(c), c.sorter.seed);
     } catch (const InputError& e) {
-      const bool sieves =
-          c.classes[k].sizes == SizeLaw::sieves && std::string(e.what()).find("siev") != std::string::npos;
-      problems.push_back({.key = fmt::format("sorter.class.{}.{}", k, sieves ? "sieves" : "form"),
-                          .what = e.what(),
-                          .expected = e.advice.expected,
-                          .example = e.advice.example});
+      problems.push_back(
+          {.key = fmt::format("sorter.class.{}.{}", k, e.advice.key.empty() ? "form" : e.advice.key),
+           .what = e.what(),
+           .expected = e.advice.expected,
+           .example = e.advice.example});
       continue;
     }
     const double least = classes.back().size_at(0.01),

@@ -10,7 +10,6 @@
 
 #include "base/error.hpp"
 #include "base/random.hpp"
-#include "case/csv_table.hpp"
 #include "shape/polytope.hpp"
 #include "shape/stl.hpp"
 #include "sorter/plan_view.hpp"
@@ -18,9 +17,8 @@
 namespace ejecta {
 namespace {
 
-constexpr int kRocks = 32;          ///< different shapes of a class of rocks
-constexpr int kRockPoints = 24;     ///< of which each is the hull
-constexpr int kSizeSamples = 4096;  ///< for means over sizes
+constexpr int kRocks = 32;       ///< different shapes of a class of rocks
+constexpr int kRockPoints = 24;  ///< of which each is the hull
 /// Longest edge of a piece of surface: beside the smallest dimension, and beside the jet, whose velocity
 /// falls to a half within 6.5 mm where bodies cross it, m.
 constexpr double kPieceOverSize = 0.71, kPiece = 7.1e-3;
@@ -148,111 +146,19 @@ std::vector<Prototype> make_prototypes(const ParticleClassSpec& s, double size, 
   return list;
 }
 
-/// The quantile of the normal distribution (Acklam's rational approximation, relative error 1.2e-9).
-double normal_quantile(double p) {
-  constexpr double a[] = {-3.969683028665376e+01, 2.209460984245205e+02,  -2.759285104469687e+02,
-                          1.383577518672690e+02,  -3.066479806614716e+01, 2.506628277459239e+00};
-  constexpr double b[] = {-5.447609879822406e+01, 1.615858368580409e+02, -1.556989798598866e+02,
-                          6.680131188771972e+01, -1.328068155288572e+01};
-  constexpr double c[] = {-7.784894002430293e-03, -3.223964580411365e-01, -2.400758277161838e+00,
-                          -2.549732539343734e+00, 4.374664141464968e+00,  2.938163982698783e+00};
-  constexpr double d[] = {7.784695709041462e-03, 3.224671290700398e-01, 2.445134137142996e+00,
-                          3.754408661907416e+00};
-  if (p < 0.02425) {
-    const double q = std::sqrt(-2.0 * std::log(p));
-    return (((((c[0] * q + c[1]) * q + c[2]) * q + c[3]) * q + c[4]) * q + c[5]) /
-           ((((d[0] * q + d[1]) * q + d[2]) * q + d[3]) * q + 1.0);
-  }
-  if (p > 1.0 - 0.02425) return -normal_quantile(1.0 - p);
-  const double q = p - 0.5, r = q * q;
-  return (((((a[0] * r + a[1]) * r + a[2]) * r + a[3]) * r + a[4]) * r + a[5]) * q /
-         (((((b[0] * r + b[1]) * r + b[2]) * r + b[3]) * r + b[4]) * r + 1.0);
-}
-
-double interpolate(const std::vector<double>& x, const std::vector<double>& y, double at) {
-  const auto above = std::upper_bound(x.begin(), x.end(), at);
-  if (above == x.begin()) return y.front();
-  if (above == x.end()) return y.back();
-  const auto n = static_cast<std::size_t>(above - x.begin());
-  return y[n - 1] + (at - x[n - 1]) / (x[n] - x[n - 1]) * (y[n] - y[n - 1]);
-}
-
 }  // namespace
 
 ParticleClass::ParticleClass(const ParticleClassSpec& spec, const std::string& directory, std::int64_t seed)
-    : spec_(spec) {
-  if (spec.sizes == SizeLaw::sieves || spec.sizes == SizeLaw::rosin_rammler) {
-    std::vector<double> size, finer;  // by mass
-    if (spec.sizes == SizeLaw::sieves) {
-      const std::string file = (std::filesystem::path(directory) / spec.sieves).string();
-      std::vector<Problem> problems;
-      const CsvTable table = read_csv(file,
-                                      {.kind = "a sieve analysis",
-                                       .columns = {{"size", Dimension::length}, {"finer", Dimension::none}},
-                                       .example_head = "size [mm], finer",
-                                       .example_row = "10, 0"},
-                                      problems);
-      if (!problems.empty()) throw InputError(render(problems));
-      for (const auto& row : table.rows) {
-        size.push_back(row[0]);
-        finer.push_back(row[1]);
-      }
-      const bool sound = size.size() >= 2 && finer.front() == 0.0 && finer.back() == 1.0 &&
-                         size.front() > 0.0 && std::is_sorted(finer.begin(), finer.end());
-      if (!sound)
-        throw InputError(fmt::format("{}: no distribution of sizes", file),
-                         {.expected = "a share that is finer which ascends from 0 to 1, at sizes above 0",
-                          .example = "size [mm], finer: 5, 0; 10, 0.4; 20, 1"});
-    } else {
-      // From 1 % to 99 %: the law itself has no smallest particle, and a feed has.
-      for (int n = 0; n <= 200; ++n) {
-        const double f = 0.01 + 0.98 * n / 200.0;
-        size.push_back(spec.size * std::pow(-std::log(1.0 - f), 1.0 / spec.spread));
-        finer.push_back(n / 200.0);
-      }
-    }
-    sizes_.push_back(size.front());
-    finer_.push_back(0.0);
-    constexpr int kSteps = 16;  // between sieves the mass is spread evenly over the size
-    for (std::size_t n = 1; n < size.size(); ++n)
-      for (int k = 0; k < kSteps; ++k) {
-        const double middle = size[n - 1] + (k + 0.5) / kSteps * (size[n] - size[n - 1]);
-        sizes_.push_back(size[n - 1] + (k + 1.0) / kSteps * (size[n] - size[n - 1]));
-        finer_.push_back(finer_.back() + (finer[n] - finer[n - 1]) / kSteps / std::pow(middle, 3));
-      }
-    const double all = finer_.back();
-    for (double& f : finer_) f /= all;
-  }
+    : spec_(spec), sizes_(size_distribution(spec, directory)) {
   const double typical = size_at(0.5);
   prototypes_ = make_prototypes(spec, typical, directory, seed);
-  double cube = 0.0, square = 0.0, first = 0.0;
-  for (int n = 0; n < kSizeSamples; ++n) {
-    const double s = size_at((n + 0.5) / kSizeSamples);
-    first += s / kSizeSamples;
-    square += s * s / kSizeSamples;
-    cube += s * s * s / kSizeSamples;
-  }
+  const double first = sizes_.mean_power(1), square = sizes_.mean_power(2), cube = sizes_.mean_power(3);
   for (const Prototype& p : prototypes_) {
     const double each = 1.0 / static_cast<double>(prototypes_.size());
     mean_mass_ += each * spec.density * p.volume * cube / std::pow(p.size, 3);
     mean_area_ += each * p.area * square / (p.size * p.size);
     mean_perimeter_ += each * p.perimeter * first / p.size;
   }
-}
-
-double ParticleClass::size_at(double u) const {
-  switch (spec_.sizes) {
-    case SizeLaw::one:
-      return spec_.size;
-    case SizeLaw::uniform:
-      return spec_.size + u * (spec_.size_to - spec_.size);
-    case SizeLaw::lognormal:
-      return spec_.size * std::exp(spec_.spread * normal_quantile(u));
-    case SizeLaw::rosin_rammler:
-    case SizeLaw::sieves:
-      break;
-  }
-  return interpolate(finer_, sizes_, u);
 }
 
 const Prototype& ParticleClass::prototype(double u) const {

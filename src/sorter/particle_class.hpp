@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "case/case.hpp"
+#include "case/size_distribution.hpp"
 #include "sorter/feed_particle.hpp"
 
 namespace ejecta {
@@ -14,7 +15,7 @@ class ParticleClass {
   ParticleClass(const ParticleClassSpec& spec, const std::string& directory, std::int64_t seed);
 
   /// Of the share `u` (0 to 1) of the particles, by number, that are smaller; m.
-  double size_at(double u) const;
+  double size_at(double u) const { return sizes_.quantile(u); }
   /// One of the prototypes, by a number 0 to 1.
   const Prototype& prototype(double u) const;
   double mass_of(const Prototype& p, double scale) const {
@@ -32,8 +33,8 @@ class ParticleClass {
 
  private:
   ParticleClassSpec spec_;
+  SizeDistribution sizes_;
   std::vector<Prototype> prototypes_;
-  std::vector<double> finer_, sizes_;  ///< by number, ascending: where no formula gives it
   double mean_mass_ = 0.0, mean_area_ = 0.0, mean_perimeter_ = 0.0;
 };
 

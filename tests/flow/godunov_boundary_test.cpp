@@ -41,6 +41,25 @@ double reflection(BoundaryType type, int cells) {
   return most / height;
 }
 
+// Each of 400 discs, one a cell, keeps its own condition: a handle of eight bits would begin again at the
+// 257th.
+TEST(GodunovBoundary, HoldsHundredsOfDiscs) {
+  const int n = 20;
+  const Grid grid(even_axis(0, 1, n), even_axis(0, 1, n), even_axis(0, 1, 2), false);
+  gas::Boundaries boundaries(grid, gas::GasConstants{});
+  const auto number = [&](int i, int j) { return double(1 + i + n * j); };
+  for (int j = 0; j < n; ++j)
+    for (int i = 0; i < n; ++i) {
+      Condition c;
+      c.type = BoundaryType::velocity;
+      c.state.velocity = Vec3(0, 0, number(i, j));
+      boundaries.add_disc(4, Vec3((i + 0.5) / n, (j + 0.5) / n, 0), 0.4 / n, c);
+    }
+  for (int j = 0; j < n; ++j)
+    for (int i = 0; i < n; ++i)
+      EXPECT_EQ(boundaries.at(4, static_cast<std::size_t>(i + n * j)).state.velocity.z(), number(i, j));
+}
+
 TEST(GodunovBoundary, ATransmissiveEndReturnsLessThanTwoPercent) {
   EXPECT_LT(reflection(BoundaryType::wave_transmissive, 200), 0.02);
 }

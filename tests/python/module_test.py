@@ -77,6 +77,26 @@ class HostIsUntouched(unittest.TestCase):
         self.assertGreater(now["denormals"], 0.0)
 
 
+class BodiesThatComeLater(unittest.TestCase):
+    """A body that enters after the start has shorter histories, and none before it came."""
+
+    def test_with_and_without_files(self):
+        case = json.loads(json.dumps(BALL))
+        later = {**case["body"][0], "name": "later", "position": [0.05, 0, 0.02], "enters_at": "10 ms"}
+        case["body"].append(later)
+        directory = place("later.run")
+        result = ejecta.run(ejecta.Case(case), out=directory)
+        kept = ejecta.run(ejecta.Case(case))
+        run = ejecta.Run(directory)
+        self.assertEqual(run.histories(), kept.histories())
+        early, late = run.history("body-ball"), run.history("body-later")
+        self.assertAlmostEqual(early["time"][0], 0.0)
+        self.assertTrue(numpy.isfinite(late["z"]).all())
+        self.assertAlmostEqual(late["z"][-1], 0.02 - 0.5 * 9.81 * 0.01**2, delta=1e-5)
+        numpy.testing.assert_array_equal(late["z"], kept.history("body-later")["z"])
+        self.assertEqual(len(result.quantities["bodies"]), 2)
+
+
 class SameBits(unittest.TestCase):
     @classmethod
     def setUpClass(cls):

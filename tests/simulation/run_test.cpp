@@ -11,6 +11,7 @@
 #include "app/ejection.hpp"
 #include "base/error.hpp"
 #include "base/file_lock.hpp"
+#include "output/output_file.hpp"
 #include "scratch_directory.hpp"
 
 /// run(case) -> result, as studies, sorters and scripts call it.
@@ -162,6 +163,78 @@ report = false
   }
   mesh(-0.5);
   EXPECT_NE(run(c, {.files = files(true)}).end, RunEnd::stopped);
+}
+
+/// Neither with another opening curve of the valve nor with another case of the jet.
+TEST(Run, IsNotResumedWithATraceOrJetThatHasChanged) {
+  const ScratchDirectory scratch;
+  const auto write = [&](const char* name, const std::string& text) {
+    std::ofstream(scratch / name) << text;
+  };
+  const std::string opening = "time [ms], opening\n0, 0\n0.2, 1\n8, 1\n",
+                    later = "time [ms], opening\n0, 0\n0.3, 1\n8, 1\n";
+  const std::string jet = "[run]\nend_time = \"1 ms\"\n";
+  Case c = short_ejection();
+  c.valve.shape = ValveShape::trace;
+  c.valve.trace = (scratch / "opening.csv").string();
+  c.jet.source_case =
+      (scratch / "jet.toml").string();  // this jet is not computed from it; a file all the same
+  const auto files = [&](bool resume) {
+    return RunFiles{.directory = scratch.path() / "run", .resume = resume, .here = "again"};
+  };
+  write("opening.csv", opening);
+  write("jet.toml", jet);
+  std::int64_t step = 0;
+  ASSERT_EQ(run(c, {.files = files(false),
+                    .observe = [&](const Moment& m) { step = m.step; },
+                    .stop = [&] { return step == 4; }})
+                .end,
+            RunEnd::stopped);
+  const auto refusal = [&] {
+    try {
+      run(c, {.files = files(true)});
+    } catch (const InputError& e) {
+      return std::string(e.what());
+    }
+    return std::string("none");
+  };
+  write("opening.csv", later);
+  EXPECT_NE(refusal().find("opening.csv has changed"), std::string::npos) << refusal();
+  write("opening.csv", opening);
+  write("jet.toml", jet + "title = \"another\"\n");
+  EXPECT_NE(refusal().find("jet.toml has changed"), std::string::npos) << refusal();
+  write("jet.toml", jet);
+  EXPECT_EQ(refusal(), "none");
+}
+
+/// What was finished is lost only to what is finished.
+TEST(Run, ThatDivergesKeepsTheFinishedOneThatStoodThere) {
+  const ScratchDirectory scratch;
+  const std::filesystem::path place = scratch.path() / "run";
+  const RunFiles anew{.directory = place, .overwrite = true, .command = "typed"};
+  const Case c = short_ejection();
+  run(c, {.files = RunFiles{.directory = place, .command = "typed"}});
+  const std::string before = output::read_file(place / "result.json");
+  std::string told;
+  std::int64_t step = 0;
+  const auto fails_at = [&](std::int64_t n) {
+    return Context{.files = anew,
+                   .observe =
+                       [&, n](const Moment& m) {
+                         step = m.step;
+                         if (step >= n) throw DivergedError("by the test");
+                       },
+                   .note = [&](const std::string& sentence) { told = sentence; }};
+  };
+  for (const std::int64_t n : {0, 3}) {  // the second finds a run without a result, and one put aside
+    EXPECT_THROW(run(c, fails_at(n)), DivergedError);
+    EXPECT_EQ(output::read_file(place / "earlier" / "result.json"), before);
+    EXPECT_FALSE(std::filesystem::exists(place / "result.json"));
+    EXPECT_NE(told.find((place / "earlier").string()), std::string::npos) << told;
+  }
+  run(c, {.files = anew});
+  EXPECT_FALSE(std::filesystem::exists(place / "earlier"));
+  EXPECT_TRUE(finished_run(c, place));
 }
 
 TEST(Run, WithoutFilesItHasTheHistoriesInTheResult) {
