@@ -108,10 +108,7 @@ Json judge_case(const std::string& text, const std::string& path, double bandwid
   std::vector<Problem> problems, warnings, told_already;
   std::optional<Scene> scene;
   try {
-    const FurtherChecks further = [&](const Case& of) {
-      return of.campaign.enabled ? std::vector<Problem>{}
-                                 : check_bodies(of, &scene);  // only its parts have any
-    };
+    const FurtherChecks further = [&](const Case& of) { return check_set_up(of, &scene); };
     const Case c = examine_case(text, path, {}, problems, &warnings, further);
     tell(problems);
     answer["commands"] = commands_for(c);

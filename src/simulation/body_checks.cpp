@@ -472,17 +472,19 @@ std::vector<Problem> check_bodies(const Case& original, std::optional<Scene>* se
   return found;
 }
 
+std::vector<Problem> check_set_up(const Case& c, std::optional<Scene>* scene) {
+  if (c.campaign.enabled) return {};  // only its parts have bodies
+  std::vector<Problem> found = check_bodies(c, scene);
+  if (c.sorter.enabled) {
+    const std::vector<Problem> more = check_feed(c);
+    found.insert(found.end(), more.begin(), more.end());
+  }
+  return found;
+}
+
 Case load_checked(const std::string& path, const std::vector<std::string>& overrides,
                   std::vector<Problem>* warnings, std::optional<Scene>* scene) {
-  return load_case(path, overrides, warnings, [scene](const Case& c) {
-    if (c.campaign.enabled) return std::vector<Problem>{};  // it has no bodies
-    std::vector<Problem> found = check_bodies(c, scene);
-    if (c.sorter.enabled) {
-      const std::vector<Problem> more = check_feed(c);
-      found.insert(found.end(), more.begin(), more.end());
-    }
-    return found;
-  });
+  return load_case(path, overrides, warnings, [scene](const Case& c) { return check_set_up(c, scene); });
 }
 
 }  // namespace ejecta

@@ -41,7 +41,11 @@ std::vector<Problem> check_bodies(const Case& c, const Grid& grid, std::span<con
 /// set up (see scene_of), if there is no error.
 std::vector<Problem> check_bodies(const Case& c, std::optional<Scene>* scene = nullptr);
 
-/// Reads a case file and checks its bodies as well (see load_case and check_bodies).
+/// All that is wrong with a case which only those know who set it up: its bodies, the feed of its sorter.
+/// `scene`: as for check_bodies.
+std::vector<Problem> check_set_up(const Case& c, std::optional<Scene>* scene = nullptr);
+
+/// Reads a case file and checks it as it is set up as well (see load_case and check_set_up).
 Case load_checked(const std::string& path, const std::vector<std::string>& overrides = {},
                   std::vector<Problem>* warnings = nullptr, std::optional<Scene>* scene = nullptr);
 

@@ -10,6 +10,7 @@
 #include "base/error.hpp"
 #include "base/sha256.hpp"
 #include "base/stopwatch.hpp"
+#include "base/text.hpp"
 #include "case/find_key.hpp"
 #include "case/node_path.hpp"
 #include "case/override.hpp"
@@ -363,6 +364,39 @@ Json study_header(const std::string& kind, const Case& base) {
           {"case", base.path},
           {"version", output::version()},
           {"input_sha256", sha256_hex(write_case(c) + output::digests_of(files_of(c)).dump())}};
+}
+
+namespace {
+
+/// Names of all single values of a result.
+void list_names(const Json& value, const std::string& at, std::vector<std::string>& names) {
+  if (!value.is_structured()) return names.push_back(at);
+  std::size_t n = 0;
+  for (const auto& [key, child] : value.items())
+    list_names(child, at + "/" + (value.is_array() ? std::to_string(n++) : key), names);
+}
+
+}  // namespace
+
+std::vector<std::string> unknown_quantities(const TaskStore& store) {
+  const std::vector<TaskState> states = store.states();
+  std::set<std::string> wanted;
+  for (const std::string q : store.header()["quantities"]) wanted.insert(q);
+  std::vector<std::string> names;
+  for (std::size_t n = 0; n < states.size() && !wanted.empty(); ++n) {
+    if (states[n] != TaskState::done) continue;
+    const Json result = store.result(n).value("result", Json());
+    std::erase_if(wanted, [&](const std::string& q) { return result.contains(Json::json_pointer(q)); });
+    if (names.empty()) list_names(result, "", names);
+  }
+  std::vector<std::string> told;
+  for (const std::string& q : wanted) {
+    if (names.empty()) break;  // no run is done
+    const std::string close = nearest(q, names);
+    told.push_back(fmt::format("no run has the quantity \"{}\"{}", q,
+                               close.empty() ? "" : fmt::format("; did you mean \"{}\"?", close)));
+  }
+  return told;
 }
 
 Json study_result(const TaskStore& store) {

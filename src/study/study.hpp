@@ -24,6 +24,8 @@ StudySetup set_up_study(const Node& root, const Case& base, const FurtherChecks&
 /// The head of a study's directory: kind, title, case, and the hash by which it knows itself again.
 nlohmann::ordered_json study_header(const std::string& kind, const Case& base);
 
+/// A sentence for each asked-for quantity that no run has, where at least one is done.
+std::vector<std::string> unknown_quantities(const TaskStore& store);
 /// result.json of a study: one entry a run with the varied keys (SI units), the quantities and the state.
 nlohmann::ordered_json study_result(const TaskStore& store);
 /// The same as a table for Excel: units stand in the head.

@@ -21,7 +21,7 @@ namespace ejecta {
 namespace {
 
 FurtherChecks all_checks() {
-  return [](const Case& c) { return check_bodies(c); };
+  return [](const Case& c) { return check_set_up(c); };
 }
 
 /// Works on tasks where the options say, until none is left; false: was stopped.
@@ -100,6 +100,7 @@ StudyEnd compute_study(const StudyOptions& o, const Attendance& who) {
                        directory.string()));
   const bool finished = work(o, store, tasks, at_once, who);
   collect_study(store);
+  for (const std::string& sentence : unknown_quantities(store)) who.tell("warning: " + sentence);
   if (!finished) return StudyEnd::stopped;
   return study_status(store).failed > 0 ? StudyEnd::failures : StudyEnd::finished;
 }

@@ -88,6 +88,12 @@ class Study(unittest.TestCase):
         self.ejecta("study", "collect", "s")
         self.assertEqual(self.result("s"), before)
 
+    def test_a_quantity_that_no_run_has_is_told(self):
+        case = self.case(count=2)
+        said = self.ejecta("study", case, "--out", "s", "--set", 'study.quantities=["/bodies/0/max_contact_force"]')
+        self.assertIn('no run has the quantity "/bodies/0/max_contact_force"', said)
+        self.assertIn('did you mean "/bodies/0/max_contact_force_N"?', said)
+
     def test_any_launcher_can_run_the_tasks(self):
         case = self.case()
         self.ejecta("study", case, "--out", "whole")

@@ -210,9 +210,8 @@ class Errors(unittest.TestCase):
 
     def test_diverging_is_an_arithmetic_error(self):
         case = short()
-        case.update({"body.particle.velocity": [1e30, 0, 0], "body.particle.on_belt": False,
-                     "body.particle.position": [0, 0, 0.075]})
-        with self.assertRaises((ejecta.DivergedError, ejecta.InputError)):
+        case["fluid.viscosity"] = "1e6 Pa s"  # single precision does not bear what turbulence makes of it
+        with self.assertRaises(ejecta.DivergedError):
             ejecta.run(case)
 
 
@@ -236,7 +235,7 @@ class Cases(unittest.TestCase):
 
     def test_bits_of_numbers(self):
         case = short()
-        for value in (1 / 3, 0.1 + 0.2, 1e-3 * 7, 5e-300):
+        for value in (1 / 3, 0.1 + 0.2, 1e-3 * 7, 5e-12 / 3):
             case["valve.duration"] = value
             self.assertEqual(float(case["valve.duration"]), value)
 

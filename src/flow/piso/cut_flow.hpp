@@ -124,6 +124,8 @@ class CutFlow {
   /// Components of a small cell's velocity that are its carrier's: through sides of the box, where both share
   /// one pressure.
   std::array<bool, 3> bound_to_carrier(const CutCell& small) const;
+  /// Nearest a centre counts to its wall, parts of a cell: friction there is implicit anyway.
+  static constexpr Real kNearest = Real(0.05);
   const Grid& grid_;
   Real nu_;
   std::array<bool, 6> passable_;
