@@ -105,9 +105,9 @@ void sense_map(const Case& c, Findings& found) {
   if (c.map.lying != MapLying::given && c.bodies[body].shape == ShapeKind::sphere)
     found.error("map.lying", "a sphere lies the same, however it is turned", "nothing, or another shape",
                 "lying = \"given\"");
-  if (c.map.max_fine_runs > c.map.max_runs)
+  if (c.map.max_fine_runs > c.map.max_runs && c.given.contains("map.max_fine_runs"))
     found.error("map.max_fine_runs", "more fine runs than runs", "at most map.max_runs",
-                "max_fine_runs = 15");
+                fmt::format("max_fine_runs = {}", c.map.max_runs));
   if (c.bodies[body].copies > 1)
     found.error("map.body", "copies of the body are on the belt too", "a body without copies", "copies = 1");
 }

@@ -107,17 +107,22 @@ std::string JobList::case_of(const std::string& name) {
   return stem + ".toml";
 }
 
-Json JobList::all(const Folder::Content& content) {
+Json JobList::all(const Folder::Content& content, bool ended_too) {
   const std::lock_guard lock(one_at_a_time_);
   const Queue::State queue = queue_.read();
   Json list = Json::array();
   std::map<std::string, Ended> still_ended;
-  for (const auto& [name, kind_there] : content.jobs) {
+  std::map<std::string, std::string> there = content.jobs;
+  for (const Job& job : queue.started)
+    there.try_emplace(job.name, job.kind);  // since the folder was looked at
+  for (const auto& [name, kind_there] : there) {
     if (find(queue.waiting, name)) continue;
     const fs::path directory = folder_.path() / name;
     const bool active = find(queue.started, name) != nullptr;
-    std::string stamp = stamp_of(directory, kind_there);
-    if (const auto it = ended_.find(name); !active && it != ended_.end() && it->second.stamp == stamp) {
+    const auto it = ended_.find(name);
+    const bool known = !active && it != ended_.end();
+    std::string stamp = known && !ended_too ? it->second.stamp : stamp_of(directory, kind_there);
+    if (known && it->second.stamp == stamp) {
       list.push_back(it->second.state);
       still_ended.insert(ended_.extract(it));
       continue;
@@ -221,6 +226,25 @@ void JobList::stop(const std::string& name) {
   const Json& progress = files_.read(directory / "progress.json");  // started at a terminal
   if (const pid_t process = progress.is_object() ? progress.value("process", 0) : 0; process > 0)
     ::kill(process, SIGTERM);
+}
+
+void JobList::remove(const std::string& name) {
+  const fs::path directory = folder_.inside(name), log = log_of(name);
+  const std::lock_guard lock(one_at_a_time_);
+  if (find(queue_.read().waiting, name)) throw InputError(fmt::format("{} waits: cancel it first", name));
+  const fs::path inside = directory.lexically_relative(folder_.path());
+  const bool hidden =
+      std::any_of(inside.begin(), inside.end(), [](const fs::path& part) { return part.string()[0] == '.'; });
+  if (hidden || kind_of(name).empty() || (!fs::exists(directory) && !fs::exists(log)))
+    throw InputError(fmt::format("there is nothing like {}", name));
+  if (goes_on(name)) throw InputError(fmt::format("{} goes on: stop it first", name));
+  fs::path away;
+  for (int number = 1; away.empty() || fs::exists(away); ++number)
+    away = folder_.path() / ".removed" / std::to_string(number);
+  away /= inside;
+  fs::create_directories(away.parent_path());
+  if (fs::exists(directory)) fs::rename(directory, away);
+  if (fs::exists(log)) fs::rename(log, away.string() + ".log");
 }
 
 void JobList::launch(const Job& job, int side_by_side) {

@@ -21,7 +21,8 @@ class JobList {
 
   /// One object a job, sorted by name: name, kind, case, state ("waiting", "starting", "running", "done",
   /// "stopped", "diverged", "failed"), and what job_state() knows of it.
-  nlohmann::ordered_json all(const Folder::Content& content);
+  /// `ended_too`: those that had ended are looked at as well; it takes three looks at the disk for each.
+  nlohmann::ordered_json all(const Folder::Content& content, bool ended_too = true);
   /// {"at_once": of the jobs that wait, so many are started side by side}
   nlohmann::ordered_json settings();
   void set_at_once(int count);
@@ -34,6 +35,8 @@ class JobList {
   void resume(const std::string& name);
   /// Takes one that waits out of the queue; asks one that goes on to stop, with a checkpoint.
   void stop(const std::string& name);
+  /// Puts one that has ended out of sight, into .removed/ in the folder, whence it can be taken back.
+  void remove(const std::string& name);
   /// Starts of those that wait as many as may run.
   void advance();
 

@@ -38,6 +38,7 @@ constexpr int kStreams = 32;  ///< of them with live events, each of which holds
 constexpr std::size_t kLargestText = 1 << 20, kLargestUpload = 64 << 20;
 constexpr std::size_t kMostCompared = 50;
 constexpr auto kBetweenLooks = std::chrono::seconds(1);  ///< so often a run says how far it is
+constexpr int kShare = 200;  ///< looking at all of the folder takes at most so small a part of the time
 constexpr auto kSignOfLife = std::chrono::seconds(5);
 
 void answer(Response& response, const Json& json) {
@@ -323,6 +324,10 @@ struct Workbench::Parts {
       jobs.stop(text_of(body, "job"));
       return Json::object();
     });
+    post_job("/api/remove", [this](const Json& body) {
+      jobs.remove(text_of(body, "job"));
+      return Json::object();
+    });
     post_job("/api/at-once", [this](const Json& body) {
       if (!body.is_object() || !body.contains("count") || !body["count"].is_number_integer())
         throw InputError("the request has no \"count\"");
@@ -374,18 +379,25 @@ struct Workbench::Parts {
     wanted.notify_all();
   }
 
+  /// Each second at what goes on; at the whole folder as often as that costs little, or when it is asked for.
   void keep_looking() {
+    using Clock = std::chrono::steady_clock;
+    Folder::Content content;
+    Clock::time_point all_due{};
     std::unique_lock lock(mutex);
     while (!ends) {
       wanted.wait_for(lock, kBetweenLooks, [&] { return ends || look_now; });
+      const auto begins = Clock::now();
+      const bool all = look_now || begins >= all_due;
       look_now = false;
       lock.unlock();
       Json now, rest;
       try {
         jobs.advance();
         if (streams > 0) {
-          const Folder::Content content = folder.content();
-          now = jobs.all(content);
+          if (all) content = folder.content();
+          now = jobs.all(content, all);
+          if (all) all_due = Clock::now() + kShare * (Clock::now() - begins);
           rest = jobs.settings();
           rest["trouble"] = "";
           rest["cases"] = content.cases;

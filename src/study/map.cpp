@@ -33,7 +33,7 @@ MapSettings settings_of(const Case& c) {
   s.coarse_cost = coarse_cost(c);
   s.first_runs = std::min(s.first_runs, m.max_runs);
   s.max_runs = m.max_runs;
-  s.max_fine = m.max_fine_runs;
+  s.max_fine = std::min(m.max_fine_runs, m.max_runs);
   s.area_error = m.area_error;
   s.seed = static_cast<std::uint64_t>(m.seed);
   s.of_class = m.is_of_class();

@@ -40,6 +40,23 @@ quantities = ["/bodies/0/peak_speed_m_s"]
 key = "run.end_time"
 values = ["5 ms", "10 ms", "15 ms", "20 ms"]
 `);
+writeFileSync(path.join(scratch, "area.toml"), `[run]
+until = "verdict"
+end_time = "200 ms"
+[flow]
+solver = "none"
+[launch]
+[splitter]
+[[body]]
+name = "cube"
+shape = "box"
+size = ["10 mm", "10 mm", "10 mm"]
+on_belt = true
+[map]
+along = ["-20 mm", "20 mm"]
+across = ["-10 mm", "10 mm"]
+max_runs = 6
+`);
 for (const name of ["sorter/tutorial.toml", "paper/setup"]) cpSync(path.join(source, "cases", name), path.join(scratch, name), { recursive: true });
 writeFileSync(path.join(scratch, "both.toml"), `[campaign]
 [[campaign.part]]
@@ -245,6 +262,19 @@ try {
   await again.waitForSelector("section.job.done", { timeout: 60000 });
   await again.waitForSelector(".job-content .u-wrap");
   await picture(again, "study");
+
+  // A map, of nothing where no air blows.
+  await openCase(again, "area.toml");
+  await again.getByRole("button", { name: "Start map" }).click();
+  await again.waitForSelector("section.job.done", { timeout: 60000 });
+  await again.waitForSelector(".job-content svg");
+  await picture(again, "map");
+
+  // What has ended can be put away.
+  await toRuns(again);
+  await row(again, "area.map").getByRole("button", { name: "Remove area.map" }).click();
+  await again.waitForSelector(listed("area.map"), { state: "detached" });
+  assert.ok(existsSync(path.join(scratch, ".removed", "1", "area.map", "result.json")));
 
   // A sorter, and a campaign.
   await openCase(again, "sorter/tutorial.toml");

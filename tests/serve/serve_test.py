@@ -360,6 +360,24 @@ class Runs(ServerCase):
         run = self.server.wait("bad.run", ("failed",))
         self.assertIn("body.0.diameter", run["said"])
 
+    def test_what_has_ended_can_be_put_away(self):
+        self.server.start("slow.toml")
+        self.server.wait("slow.run", ("running",))
+        self.assertEqual(self.server.post("/api/remove", job="slow.run")[0], 400, "it runs")
+        self.server.post("/api/stop", job="slow.run")
+        self.server.wait("slow.run", ("stopped",))
+        (self.folder / "bad.toml").write_text(BALL.replace("10 mm", "10 kg"))
+        self.server.start("bad.toml")  # has a log and no directory
+        self.server.wait("bad.run", ("failed",))
+        for number, job in ((1, "slow.run"), (2, "bad.run")):
+            self.assertEqual(self.server.post("/api/remove", job=job)[0], 200, job)
+            self.assertIsNone(self.server.run(job))
+            self.assertTrue((self.folder / ".removed" / str(number) / f"{job}.log").exists())
+        self.assertTrue((self.folder / ".removed" / "1" / "slow.run" / "manifest.json").exists())
+        for job in ("slow.run", "slow.toml", "..", "../x.run", ".removed/1/slow.run", "", "."):
+            self.assertEqual(self.server.post("/api/remove", job=job)[0], 400, job)
+        self.assertTrue((self.folder / "slow.toml").exists())
+
     def test_events(self):
         connection = http.client.HTTPConnection("127.0.0.1", self.server.port, timeout=30)
         connection.request("GET", "/api/events", headers={"Cookie": f"ejecta-{self.server.port}={self.server.token}"})

@@ -130,6 +130,7 @@ export const api = {
   start: (name: string, kind: Kind) => post<{ job: string }>("/api/start", { case: name, kind }),
   resume: (job: string) => post<object>("/api/resume", { job }),
   stop: (job: string) => post<object>("/api/stop", { job }),
+  remove: (job: string) => post<object>("/api/remove", { job }),
   atOnce: (count: number) => post<object>("/api/at-once", { count }),
   /** `extent`: along x, y, z in the unit of the file, which nobody knows. */
   upload: async (file: File, caseName: string) => answered<{ name: string; extent: [number, number, number] }>(

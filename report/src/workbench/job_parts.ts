@@ -28,6 +28,8 @@ export class JobActions {
     const link = (file: string, words: string): HTMLElement => h("a", { href: fileOf(job.name, file), target: "_blank", rel: "noopener", "aria-label": `${words} of ${job.name}` }, words);
     if (job.report) list.push(link("report.html", "Report"));
     if (job.state === "done") list.push(link("result.json", "Numbers"));
+    if (job.state !== "waiting" && !isBusy(job))
+      list.push(this.button(job, "Remove", () => (confirm(`Remove ${job.name}? It goes into the folder .removed beside it.`) ? api.remove(job.name) : null)));
     return list;
   }
 

@@ -17,6 +17,8 @@ import { LiveRun } from "./live_run";
 /** Shows what there is of a job now; called again whenever it has changed. */
 type Look = (job: Job) => Promise<void>;
 
+const GONE = "It is no longer there.";
+
 export class JobView {
   private readonly note = h("p", { class: "note", role: "status" });
   private readonly state = h("span", { class: "state" });
@@ -43,10 +45,11 @@ export class JobView {
     if (text === this.shown) return;
     this.shown = text;
     if (!job) {
-      this.note.textContent = "It is no longer there.";
+      this.note.textContent = GONE;
       this.buttons.replaceChildren();
       return;
     }
+    if (this.note.textContent === GONE) this.note.textContent = "";
     this.element.className = `job ${job.state}`;
     this.state.textContent = job.state;
     this.progress.replaceChildren(progressOf(job));
