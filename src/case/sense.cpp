@@ -33,7 +33,8 @@ const std::array<Part, 17> parts{{
      {"map", "launch", "splitter", "body", "grid", "boundary", "jet", "valve", "environment", "flow"}},
     {sense_machine, {"sorter", "launch", "splitter", "valve", "jet", "boundary", "grid", "fluid"}},
     {sense_idle,
-     {"boundary", "valve", "contact", "body", "wall", "splitter", "grains", "coupling", "sorter"}},
+     {"boundary", "valve", "contact", "body", "wall", "splitter", "grains", "coupling", "sorter", "stream",
+      "flow"}},
 }};
 
 }  // namespace

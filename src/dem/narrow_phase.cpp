@@ -11,8 +11,9 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-/// cos 60 degrees: a face that looks more than that against a contact is the far side of a solid.
-constexpr double kFarSide = -0.5;
+/// cos 60 degrees: a face that looks more than that against a contact is the far side of a solid, one that
+/// looks as much towards it the near side.
+constexpr double kFarSide = -0.5, kNearSide = 0.5;
 
 Touch touch_ball(const BallRow& ball, double distance, const Vec3& normal) {
   Touch t;
@@ -86,21 +87,59 @@ bool beyond(const Polytope& solid, const HalfSpace& plane) {
   return plane.normal.dot(support_polytope(solid, plane.normal)) > plane.offset;
 }
 
+std::span<const int> corners_of(const Polytope& p, const Polytope::Face& f) {
+  return std::span(p.corners).subspan(static_cast<std::size_t>(f.first), static_cast<std::size_t>(f.count));
+}
+
 /// Whether a reaches as deep into b (in axes that `rotation` and `shift` take to those of a), along -out, as
 /// the first corner of b's far side lies. Above that depth b is the same without its far side: a straight way
-/// from a point of it to what was left out would cross that side there.
+/// from a point of it to what was left out would cross that side there. Where the far side runs into the near
+/// one, as at the edges of a tetrahedron, b is thin at any depth and nothing has gone through it.
 bool reaches_far_side(const Polytope& b, const Mat3& rotation, const Vec3& shift, const Vec3& out,
                       const Polytope& a) {
   const Vec3 along = rotation.transpose() * out;
   const double deepest = out.dot(support_polytope(a, -out) - shift);
   if (along.dot(support_polytope(b, along)) < deepest) return true;  // nothing is shared
+  thread_local std::vector<char> is_near;
+  is_near.assign(b.vertices.size(), false);
+  for (const Polytope::Face& f : b.faces)
+    if (f.normal.dot(along) > kNearSide)
+      for (const int v : corners_of(b, f)) is_near[static_cast<std::size_t>(v)] = true;
   return std::any_of(b.faces.begin(), b.faces.end(), [&](const Polytope::Face& f) {
     if (!(f.normal.dot(along) < kFarSide)) return false;
-    const auto corners =
-        std::span(b.corners).subspan(static_cast<std::size_t>(f.first), static_cast<std::size_t>(f.count));
-    return std::any_of(corners.begin(), corners.end(),
-                       [&](int v) { return along.dot(b.vertices[static_cast<std::size_t>(v)]) >= deepest; });
+    const auto corners = corners_of(b, f);
+    return std::any_of(corners.begin(), corners.end(), [&](int v) {
+      const std::size_t n = static_cast<std::size_t>(v);
+      return !is_near[n] && along.dot(b.vertices[n]) >= deepest;
+    });
   });
+}
+
+/// Planes along `along` through the edges between the faces of the far side of a solid and its others: what
+/// goes on behind it is as wide as it is. In the solid's axes.
+template <class IsFar, class Add>
+void for_each_outline(const Polytope& p, const Vec3& along, const IsFar& is_far, const Add& add) {
+  for (const Polytope::Face& f : p.faces) {
+    if (!is_far(f)) continue;
+    const auto corners = corners_of(p, f);
+    for (std::size_t c = 0; c < corners.size(); ++c) {
+      const int from = corners[c], to = corners[(c + 1) % corners.size()];
+      const bool inner = std::any_of(p.faces.begin(), p.faces.end(), [&](const Polytope::Face& g) {
+        if (&g == &f || !is_far(g)) return false;
+        const auto others = corners_of(p, g);
+        for (std::size_t n = 0; n < others.size(); ++n)
+          if (others[n] == to && others[(n + 1) % others.size()] == from) return true;
+        return false;
+      });
+      if (inner) continue;
+      const Vec3& at = p.vertices[static_cast<std::size_t>(from)];
+      Vec3 normal = (p.vertices[static_cast<std::size_t>(to)] - at).cross(along);
+      if (!(normal.norm() > 0)) continue;
+      normal.normalize();
+      if (normal.dot(p.centre - at) > 0) normal = -normal;
+      add(normal, normal.dot(at));
+    }
+  }
 }
 
 /// The faces of b (in axes that `rotation` and `shift` take to those of a) but for those on its far side, as
@@ -109,14 +148,22 @@ bool without_far_side(const Polytope& b, const Mat3& rotation, const Vec3& shift
                       const Polytope& a, std::vector<HalfSpace>& planes) {
   planes.clear();
   if (!reaches_far_side(b, rotation, shift, out, a)) return false;
+  const Vec3 along = rotation.transpose() * out;
+  const auto is_far = [&](const Polytope::Face& f) { return f.normal.dot(along) < kFarSide; };
+  const auto in_a = [&](const Vec3& own, double offset) {
+    const Vec3 normal = rotation * own;
+    return HalfSpace{normal, offset + normal.dot(shift)};
+  };
   bool pierced = false;
   for (const Polytope::Face& f : b.faces) {
-    const Vec3 normal = rotation * f.normal;
-    const HalfSpace plane{normal, f.offset + normal.dot(shift)};
-    if (normal.dot(out) < kFarSide) pierced = pierced || beyond(a, plane);
+    const HalfSpace plane = in_a(f.normal, f.offset);
+    if (is_far(f)) pierced = pierced || beyond(a, plane);
     else planes.push_back(plane);
   }
-  return pierced && !planes.empty();
+  if (!pierced || planes.empty()) return false;
+  for_each_outline(b, along, is_far,
+                   [&](const Vec3& n, double offset) { planes.push_back(in_a(n, offset)); });
+  return true;
 }
 
 /// As overlap_polytopes. A solid that the other has gone through goes on behind: `out`, in the axes of a,

@@ -9,6 +9,8 @@ namespace {
 
 using Polygon = std::vector<Vec3>;
 
+constexpr double kRounding = 1e-15;  // of a solid's size
+
 /// Buffers kept between calls: no step allocates.
 struct Scratch {
   Polygon polygon, clipped;
@@ -145,6 +147,7 @@ Overlap overlap_half_space(const Polytope& a, const Vec3& normal, double offset)
   o.volume = sums.volume;
   o.centroid = sums.apex + sums.moment / sums.volume;
   o.depth = offset - normal.dot(o.centroid);
+  if (!(o.depth > kRounding * a.radius)) return {};  // a corner that touches
   // What is wholly under the plane has no section with it: that of a prism as deep.
   o.area = std::max(o.area.dot(normal), 0.5 * o.volume / o.depth) * normal;
   return o;

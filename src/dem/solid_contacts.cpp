@@ -284,7 +284,8 @@ double SolidContacts::apply_laws(const World& world, int begin, int end, double 
     m.spring.secant *= factor;
     m.spring.energy =
         factor < 1 ? factor * factor * m.least : std::clamp(over_least * m.least, m.least, m.most);
-    m.spring.sharpness = 0.5 * m.spring.secant * p.touch.overlap * p.touch.overlap / m.spring.energy;
+    if (m.spring.energy > 0)  // of a dent of atoms it may be below the smallest number
+      m.spring.sharpness = 0.5 * m.spring.secant * p.touch.overlap * p.touch.overlap / m.spring.energy;
     p.stored = m.spring.energy;
     p.history.energy = now;
     p.history.power = -factor * parting;
@@ -294,7 +295,7 @@ double SolidContacts::apply_laws(const World& world, int begin, int end, double 
     double all = 0.0;
     for (const SolidPair* q : touching) all += q->stored * std::max(0.0, q->touch.normal.dot(p.touch.normal));
     Meeting& m = meetings[n];
-    m.contact.share = p.stored / all;
+    m.contact.share = all > 0 ? p.stored / all : 1.0;
     damping += dashpot_of(m.spring, m.contact, world.constants(m)) / m.contact.mass;
     apply_law(p, m, world.constants(m), world.materials.allow_tension(), dt);
   }

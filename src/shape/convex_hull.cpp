@@ -9,6 +9,7 @@
 
 #include "base/error.hpp"
 #include "shape/farthest.hpp"
+#include "shape/mass_properties.hpp"
 #include "shape/polytope.hpp"
 
 namespace ejecta {
@@ -254,13 +255,18 @@ Polytope convex_hull(const std::vector<Vec3>& points) {
   for (int n = 0; n < static_cast<int>(hull.triangles.size()); ++n)
     if (!hull.triangle(n).above.empty()) add_point(hull, n);
   Polytope result = merge_faces(hull);
-  result.centre = 0.5 * (low + high);
-  for (const Vec3& v : result.vertices) result.radius = std::max(result.radius, (v - result.centre).norm());
+  const auto hold_by_ball = [&](const Vec3& centre) {
+    result.centre = centre;
+    result.radius = 0.0;
+    for (const Vec3& v : result.vertices) result.radius = std::max(result.radius, (v - centre).norm());
+  };
+  hold_by_ball(0.5 * (low + high));
   const Farthest farthest(result.vertices);
   for (const Polytope::Face& f : result.faces)
     if (!f.normal.allFinite() || farthest.along(f.normal) > f.offset + 1e-6 * result.radius)
       throw InputError("the points are too nearly in a plane or line to span a solid",
                        {.expected = kSolidPoints});
+  hold_by_ball(mass_mesh(triangles_of(result)).centre);
   return result;
 }
 

@@ -23,7 +23,7 @@ struct Polytope {
   std::vector<Face> faces;
   std::vector<Face> seams;   ///< the parts of its faces behind which another part of the same solid goes on
   std::vector<int> corners;  ///< indices of vertices, face after face; seams last
-  Vec3 centre{0, 0, 0};      ///< of a sphere that holds it
+  Vec3 centre{0, 0, 0};      ///< of mass, so inside it: of a sphere that holds it
   double radius = 0.0;       ///< of that sphere
 };
 

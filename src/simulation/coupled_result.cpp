@@ -48,7 +48,7 @@ Json body_json(const CoupledModel& m, std::size_t b) {
   j["mean_force_N"] = vector_json(m.mean_force(b));
   j["mean_friction_N"] = vector_json(m.mean_friction(b));
   j["mean_torque_N_m"] = vector_json(m.mean_torque(b));
-  if (c.stream.enabled && c.stream.velocity.norm() > 0.0) {
+  if (m.flow() && c.stream.enabled && c.stream.velocity.norm() > 0.0) {
     const Vec3 direction = c.stream.velocity.normalized();
     const double area = c.stream.reference_area > 0.0
                             ? c.stream.reference_area

@@ -42,7 +42,10 @@ struct Shapes {
            {"superquadric", make_superquadric(kSize * Vec3(1, 0.8, 0.6), 2, 2)},
            {"mesh", make_mesh(ico, "ico")},
            {"table", make_mesh(table_mesh(2, kSize), "table")},
-           {"small sphere", make_sphere(0.2 * kSize)}};
+           {"small sphere", make_sphere(0.2 * kSize)},
+           {"corner", make_polyhedron({{0, 0, 0}, {kSize, 0, 0}, {0, kSize, 0}, {0, 0, kSize}})},
+           {"wedge", make_polyhedron({{0, 0, 0}, {1.5 * kSize, 0, 0}, {0, kSize, 0}, {1.5 * kSize, kSize, 0},
+                                      {0, 0, 0.75 * kSize}, {0, kSize, 0.75 * kSize}})}};
   }
 };
 

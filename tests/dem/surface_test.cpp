@@ -65,6 +65,57 @@ TEST(Surface, ABlockOfTrianglesIsABox) {
 
 /// Squares whose corners lie on the middles of their neighbours' edges, and slivers: edges in common with
 /// nobody.
+/// Solids that are thin at the edges on which they lie: nothing has gone through them there. And those whose box
+/// has its middle outside of them stand on the side on which they are.
+TEST(Surface, AcuteBodiesRestOnAnythingAsOnAPlane) {
+  const double a = 4e-3;
+  const std::vector<std::pair<const char*, std::vector<Vec3>>> bodies{
+      {"corner", {{0, 0, 0}, {a, 0, 0}, {0, a, 0}, {0, 0, a}}},
+      {"corner on its large face", {{0, 0, 0}, {0, -a, 0}, {-a, 0, 0}, {0, 0, -a}}},
+      {"pyramid", {{-a, -a, 0}, {a, -a, 0}, {a, a, 0}, {-a, a, 0}, {0, 0, a}}},
+      {"wedge", {{0, 0, 0}, {1.5 * a, 0, 0}, {0, a, 0}, {1.5 * a, a, 0}, {0, 0, a}, {0, a, a}}}};
+  MaterialSpec material = stone();
+  material.restitution = 0.3;
+  const Case c = scene(material);
+  const Materials materials(c);
+  const auto resting = [&](const std::vector<Vec3>& corners, bool large, int on) {
+    Particles p(Vec3(0, 0, -9.81), materials, c.contact);
+    WallSpec w = floor_at(0);
+    w.size = Vec3(100e-3, 100e-3, 20e-3);
+    if (on == 1) w.kind = WallKind::box, w.point.z() = -10e-3;
+    if (on < 2) p.add(make_wall(w, materials, ""));
+    if (on == 2 || on == 3) p.add(wall_of(flat_mesh(on == 2 ? 1 : 7, 50e-3), on == 3));
+    if (on == 4)
+      p.add(wall_of(moved(block_mesh(Vec3(50e-3, 50e-3, 10e-3), 2), Mat3::Identity(), Vec3(0, 0, -10e-3))));
+    if (on == 5) {
+      Body block = body_of("block", make_box(w.size), materials);
+      block.position.z() = -10e-3;
+      block.motion = Motion::fixed;
+      p.add(block);
+    }
+    const Quat down = large ? Quat::FromTwoVectors(Vec3(-1, -1, -1), Vec3(0, 0, -1)) : Quat::Identity();
+    const Quat tilt(Eigen::AngleAxisd(0.03, Vec3(0.6, 0.8, 0)));
+    const Shape shape = make_polyhedron(corners);
+    Body b = body_of("body", shape, materials);
+    b.orientation = tilt * down * b.orientation;
+    b.position.z() = 5e-3;
+    b.velocity.z() = -0.3;
+    const int n = p.add(b);
+    const double start = p.energy().kinetic + p.energy().potential;
+    for (int k = 0; k < 120; ++k) {
+      p.advance(1e-3);
+      EXPECT_LT(p.energy().kinetic + p.energy().potential, start * (1 + 1e-6));
+    }
+    return p.bodies()[static_cast<std::size_t>(n)].position.z();
+  };
+  for (const auto& [name, corners] : bodies) {
+    const bool large = std::string_view(name).ends_with("face");
+    const double plane = resting(corners, large, 0);
+    EXPECT_GT(plane, 0.0) << name;
+    for (int on = 1; on < 6; ++on) EXPECT_NEAR(resting(corners, large, on), plane, 2e-5) << name << " on " << on;
+  }
+}
+
 TEST(Surface, ABallRollsOverEdgesThatDoNotMatch) {
   TriangleMesh mesh;
   for (int row = 0; row < 8; ++row)
