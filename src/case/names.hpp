@@ -22,13 +22,17 @@ void check_names(const List& list, const std::string& section, Findings& found) 
 }
 
 /// As check_names, for names that become part of a file name.
+constexpr std::size_t kLongestName = 100;
+
 template <class List>
 void check_file_names(const List& list, const std::string& section, Findings& found) {
   check_names(list, section, found);
   for (std::size_t n = 0; n < list.size(); ++n)
-    if (list[n].name.empty() || list[n].name.find_first_of("/\\") != std::string::npos)
+    if (list[n].name.empty() || list[n].name.size() > kLongestName ||
+        list[n].name.find_first_of("/\\") != std::string::npos)
       found.error(fmt::format("{}.{}.name", section, n), "the name becomes part of a file name",
-                  "a name without slashes", "name = \"at-75mm\"");
+                  fmt::format("a name without slashes of at most {} letters", kLongestName),
+                  "name = \"at-75mm\"");
 }
 
 }  // namespace ejecta

@@ -118,7 +118,7 @@ class ValueReader {
     if (std::none_of(text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20; }))
       return true;
     std::string slashes(node.place.text());
-    std::replace(slashes.begin(), slashes.end(), '\\', '/');
+    std::replace(slashes.begin(), slashes.end(), '\\', key_.file ? '/' : ' ');
     return fail(
         node,
         "a \\ in double quotes begins a sign of its own, such as \\n or \\r; in the name of a file, write /",

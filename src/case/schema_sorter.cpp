@@ -130,8 +130,8 @@ std::vector<Key> keys(SplitterSpec& s) {
           "Edge above the undisturbed path there, with which it moves: belt speed, drop and stand-off change "
           "the path. A centre that passes above it is ejected",
           "assumption: not in the paper"}),
-      {"thickness", &s.thickness, length, not_negative, "Thickness of the plate", "assumption"},
-      {"length", &s.length, length, not_negative, "Extent of the plate downstream", "assumption"},
+      {"thickness", &s.thickness, length, positive, "Thickness of the plate", "assumption"},
+      {"length", &s.length, length, positive, "Extent of the plate downstream", "assumption"},
       {"solid", &s.solid, none, {}, "Bodies hit the plate; else it is only the line that decides", ""},
       {.name = "material",
        .slot = &s.material,

@@ -46,6 +46,8 @@ Vec3 within(Vec3 place, int axis, double low, double high) {
   return place;
 }
 
+constexpr std::int64_t kMostSpheres = 4096;  ///< of a cluster: what they overlap is found pair by pair
+
 /// Spheres in a row that touch or overlap fill the length; gaps would make the cluster fall apart.
 bool falls_apart(const BodySpec& b) {
   for (int a = 0; a < 3; ++a) {
@@ -76,6 +78,12 @@ void check_shape(const Case& c, const BodySpec& b, const std::string& key, Findi
       else if (b.sphere_diameter > b.size.minCoeff() * (1 + 1e-9))
         found.error(key + ".sphere_diameter", "the spheres are larger than the box they stand for",
                     "at most the shortest edge", "sphere_diameter = \"5 mm\"");
+      else if (std::int64_t{b.cluster[0]} * b.cluster[1] * b.cluster[2] > kMostSpheres)
+        found.error(
+            key + ".cluster",
+            fmt::format("a cluster of {} spheres", std::int64_t{b.cluster[0]} * b.cluster[1] * b.cluster[2]),
+            fmt::format("at most {}; a shape with faces has more detail for less", kMostSpheres),
+            "cluster = [5, 5, 5]");
       else if (falls_apart(b))
         found.error(key + ".cluster", "the spheres do not touch each other", "more or larger spheres",
                     "cluster = [3, 3, 3]");
@@ -104,7 +112,14 @@ void check_shape(const Case& c, const BodySpec& b, const std::string& key, Findi
       if (!b.files.empty() && !b.file.empty())
         found.error(key + ".files", "a mesh has either `file` or `files`", "one of them",
                     fmt::format("file = \"{}\"", b.files.front()));
-      for (const std::string& file : b.files) require_file(c, key + ".files", file, "mesh", found);
+      for (std::size_t n = 0; n < b.files.size(); ++n) {
+        require_file(c, key + ".files", b.files[n], "mesh", found);
+        if (std::find(b.files.begin(), b.files.begin() + static_cast<std::ptrdiff_t>(n), b.files[n]) !=
+            b.files.begin() + static_cast<std::ptrdiff_t>(n))
+          found.error(key + ".files",
+                      fmt::format("\"{}\" stands twice: parts may not share space", b.files[n]),
+                      "each part once", fmt::format("files = [\"{}\"]", b.files[n]));
+      }
       break;
   }
 }
@@ -243,10 +258,9 @@ void sense_walls(const Case& c, Findings& found) {
     }
     const bool endless = w.kind == WallKind::belt && w.size.isZero();
     if (w.kind == WallKind::plane || endless) require_images(c, w, key, found);
-    const int flat = w.kind == WallKind::box                                               ? 3
-                     : w.kind == WallKind::plate || (w.kind == WallKind::belt && !endless) ? 2
-                                                                                           : 0;
-    if ((flat == 3 && w.size.minCoeff() <= 0.0) || (flat == 2 && w.size.head<2>().minCoeff() <= 0.0))
+    const bool bounded =
+        w.kind == WallKind::box || w.kind == WallKind::plate || (w.kind == WallKind::belt && !endless);
+    if (bounded && w.size.minCoeff() <= 0.0)
       found.error(key + ".size", fmt::format("a wall of kind \"{}\" needs its extents", word(w.kind)),
                   "a list of 3 lengths", R"(size = ["100 mm", "100 mm", "2 mm"])");
   }

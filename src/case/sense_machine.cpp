@@ -76,7 +76,9 @@ void check_classes(const Case& c, Findings& found) {
     const double rest = 1.0 - (sum - c.classes[last].share);
     found.error(fmt::format("sorter.class.{}.share", last),
                 fmt::format("the shares of all classes add up to {:.6g}, not to 1", sum),
-                "shares that add up to 1", rest > 0.0 ? fmt::format("share = {:.6g}", rest) : "share = 0.5");
+                "shares that add up to 1",
+                rest > 0.0 ? fmt::format("share = {:.6g}", rest)
+                           : fmt::format("share = {:.6g}", c.classes[last].share / sum));
   }
   if (!any)
     found.error("sorter.class.0.eject", "no class is to be ejected", "true for at least one of them",

@@ -53,6 +53,10 @@ void check_window(const Case& c, Findings& found) {
   };
   if (!range("along", m.along) || !range("across", m.across)) return;
   const double plate = c.splitter.edge ? (*c.splitter.edge)[0] : c.splitter.distance;
+  if (m.plate_error[0] >= plate)
+    return found.error("map.plate_error",
+                       fmt::format("the plate may be off by more than it is away, {}", mm(plate)),
+                       "how well the place of the plate is known", "plate_error = [\"5 mm\", \"2 mm\"]");
   if (m.along[1] >= plate - m.plate_error[0])
     found.error("map.along", fmt::format("the window reaches to the plate, {} behind the jet", mm(plate)),
                 "places between the belt and the plate",

@@ -94,10 +94,11 @@ void sense_sorter(const Case& c, Findings& found) {
     if (v.shape != ValveShape::trace && v.duration <= 0.0)
       found.error("valve.duration", "the valve never opens", "a time, more than 0", "duration = \"8 ms\"");
     if (v.opens_at + v.delay >= c.run.end_time)
-      found.error("valve.opens_at",
+      found.error(v.opens_at < c.run.end_time ? "valve.delay" : "valve.opens_at",
                   fmt::format("the valve never opens: the run ends at {}, before it moves at {}",
                               ms(c.run.end_time), ms(v.opens_at + v.delay)),
-                  "a time before run.end_time", "opens_at = \"0 ms\"");
+                  "a time before run.end_time",
+                  v.opens_at < c.run.end_time ? "delay = \"0 ms\"" : "opens_at = \"0 ms\"");
     if (v.supply_pressure <= c.environment.pressure)
       found.error("valve.supply_pressure", "the supply is not above the ambient pressure: nothing flows",
                   "more than ambient", "supply_pressure = \"700 kPa gauge\"");

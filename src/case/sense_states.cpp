@@ -90,7 +90,7 @@ void check_state(const Case& c, const std::string& key, const StateSpec& state, 
     for (const std::string& component : *state.velocity)
       check_formula(key + ".velocity", component, extent,
                     {true, true, "a number everywhere; max(0, ...) keeps a root or logarithm in its range",
-                     "velocity = [\"= 10 * sqrt(max(0, 1 - (y/0.02)^2))\", \"0\", \"0\"]"},
+                     "velocity = [\"= 10 * sqrt(max(0, 1 - (y/0.02)^2))\", \"0 m/s\", \"0 m/s\"]"},
                     found);
   if (c.flow.solver == FlowSolver::incompressible)
     check_formula(key + ".pressure", state.pressure, extent,

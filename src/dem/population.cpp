@@ -162,8 +162,12 @@ Particles::Dent Particles::deepest_in_walls(std::size_t n) const {
   for (std::size_t w = 0; w < walls_.size(); ++w) {
     if (walls_[w].is_plane) continue;
     const auto inside = [&](const Vec3& centre, double size) {
-      if (worst.overlap < size && walls_[w].surface->contains(centre))
-        worst = {size, body, -1 - static_cast<int>(w), Vec3(0, 0, 1)};
+      if (!(worst.overlap < size) || !walls_[w].surface->contains(centre)) return;
+      double top = centre.z();  // upwards out of it, wherever it is in it
+      for (const Surface::Triangle& t : walls_[w].surface->triangles())
+        for (const Vec3& corner : t.corners) top = std::max(top, corner.z());
+      worst = {std::max(size, top - bodies_[n].position.z() + bodies_[n].shape.bounding_radius()), body,
+               -1 - static_cast<int>(w), Vec3(0, 0, 1)};
     };
     for (int k = parts_.first_ball(body); k < parts_.first_ball(body + 1); ++k)
       inside(parts_.row(k).centre(), parts_.row(k).radius);

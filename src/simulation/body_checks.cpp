@@ -103,9 +103,14 @@ class BodyCheck {
     const std::string expected =
         fmt::format("x in {} to {}, y in {} to {}, z in {} to {}", mm_or_m(low[0]), mm_or_m(high[0]),
                     mm_or_m(low[1]), mm_or_m(high[1]), mm_or_m(low[2]), mm_or_m(high[2]));
-    if (spec_.on_belt || body_.motion == Motion::fixed)
-      problem(Severity::error, place_key_, what + ": no air would ever reach it", expected,
-              placed(0.5 * (low + high)));
+    const bool beside = at_.y() < low.y() || at_.y() > high.y();
+    if (spec_.on_belt && beside)
+      problem(Severity::error, across_key(), what + ": no air would ever reach it", expected,
+              placed(Vec3(at_.x(), 0.5 * (low + high).y(), at_.z())));
+    else if (spec_.on_belt || body_.motion == Motion::fixed)
+      problem(
+          Severity::error, place_key_, what + ": no air would ever reach it", expected,
+          placed(spec_.on_belt ? Vec3(at_.x(), at_.y(), 0.5 * (low + high).z()) : Vec3(0.5 * (low + high))));
     else
       problem(Severity::warning, place_key_, what + ": no air reaches it before it enters", expected,
               placed(0.5 * (low + high)));
@@ -116,10 +121,14 @@ class BodyCheck {
   std::string placed(const Vec3& place) const {
     if (!spec_.on_belt) return place_line("position", place);
     const Vec3 moved = place - at_;
-    if (moved.z() != 0.0)
+    if (moved.y() == 0.0)
       return fmt::format("stand_off = \"{}\"", mm_or_m(case_.launch.stand_off + moved.z()));
-    return fmt::format("across = \"{}\"", mm_or_m(spec_.across + moved.y()));
+    return spec_.across != 0.0
+               ? fmt::format("across = \"{}\"", mm_or_m(spec_.across + moved.y()))
+               : fmt::format("offset_across = \"{}\"", mm_or_m(case_.launch.offset_across + moved.y()));
   }
+
+  std::string across_key() const { return spec_.across != 0.0 ? key_ + ".across" : "launch.offset_across"; }
 
   bool lets_air_in(const BoundarySpec& face) const {
     const auto blows = [](BoundaryType t) {
@@ -152,10 +161,7 @@ class BodyCheck {
               inside, example);
     else if (spec_.on_belt && !goes_on)
       problem(
-          Severity::error,
-          d != 1                ? place_key_
-          : spec_.across != 0.0 ? key_ + ".across"
-                                : "launch.offset_across",
+          Severity::error, d != 1 ? place_key_ : across_key(),
           fmt::format(
               "the domain is too small for the path: the body sticks {} out of the box through {} where it "
               "crosses the jet's axis",

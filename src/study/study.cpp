@@ -176,7 +176,9 @@ class Setup {
       return wrong("key", fmt::format("{} may not vary: it changes no result", spec.key),
                    "a key that decides what happens", "", "key = \"valve.supply_pressure\"");
     for (const Variable& other : variables_)
-      if (other.key == spec.key) return wrong("key", spec.key + " varies already", "each key once");
+      if (other.key == spec.key)
+        return wrong("key", spec.key + " varies already", "each key once", "",
+                     "key = \"valve.supply_pressure\"");
     Variable v{.key = spec.key, .values = spec.values, .range = {}, .from = {}, .to = {}, .place = {}};
     const bool range = spec.from || spec.to;
     if (range == !spec.values.empty())
@@ -205,7 +207,8 @@ class Setup {
       return wrong(range ? "steps" : "values",
                    fmt::format("{} values where {} has {}", v.values.size(), variables_.front().key,
                                variables_.front().values.size()),
-                   "lists of one length: the first values go together, then the second");
+                   "lists of one length: the first values go together, then the second", "",
+                   range ? fmt::format("steps = {}", variables_.front().values.size()) : "design = \"grid\"");
     variables_.push_back(std::move(v));
   }
 

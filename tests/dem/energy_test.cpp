@@ -44,8 +44,12 @@ struct Shapes {
            {"table", make_mesh(table_mesh(2, kSize), "table")},
            {"small sphere", make_sphere(0.2 * kSize)},
            {"corner", make_polyhedron({{0, 0, 0}, {kSize, 0, 0}, {0, kSize, 0}, {0, 0, kSize}})},
-           {"wedge", make_polyhedron({{0, 0, 0}, {1.5 * kSize, 0, 0}, {0, kSize, 0}, {1.5 * kSize, kSize, 0},
-                                      {0, 0, 0.75 * kSize}, {0, kSize, 0.75 * kSize}})}};
+           {"wedge", make_polyhedron({{0, 0, 0},
+                                      {1.5 * kSize, 0, 0},
+                                      {0, kSize, 0},
+                                      {1.5 * kSize, kSize, 0},
+                                      {0, 0, 0.75 * kSize},
+                                      {0, kSize, 0.75 * kSize}})}};
   }
 };
 

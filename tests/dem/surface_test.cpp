@@ -65,8 +65,8 @@ TEST(Surface, ABlockOfTrianglesIsABox) {
 
 /// Squares whose corners lie on the middles of their neighbours' edges, and slivers: edges in common with
 /// nobody.
-/// Solids that are thin at the edges on which they lie: nothing has gone through them there. And those whose box
-/// has its middle outside of them stand on the side on which they are.
+/// Solids that are thin at the edges on which they lie: nothing has gone through them there. And those whose
+/// box has its middle outside of them stand on the side on which they are.
 TEST(Surface, AcuteBodiesRestOnAnythingAsOnAPlane) {
   const double a = 4e-3;
   const std::vector<std::pair<const char*, std::vector<Vec3>>> bodies{
@@ -112,7 +112,8 @@ TEST(Surface, AcuteBodiesRestOnAnythingAsOnAPlane) {
     const bool large = std::string_view(name).ends_with("face");
     const double plane = resting(corners, large, 0);
     EXPECT_GT(plane, 0.0) << name;
-    for (int on = 1; on < 6; ++on) EXPECT_NEAR(resting(corners, large, on), plane, 2e-5) << name << " on " << on;
+    for (int on = 1; on < 6; ++on)
+      EXPECT_NEAR(resting(corners, large, on), plane, 2e-5) << name << " on " << on;
   }
 }
 
