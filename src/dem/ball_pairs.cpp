@@ -102,11 +102,18 @@ void BallContacts::find_births() {
   births_ = std::any_of(born.begin(), born.end(), [](double m) { return m > 0; });
 }
 
-/// Only bodies of several balls have groups of more than one.
+/// Only bodies of several balls and balls near several planes have groups of more than one.
 void BallContacts::group_pairs(const Parts& parts) {
   grouped_.clear();
   groups_.assign(1, 0);
-  if (!parts.any_of_several_balls()) return;
+  const auto near_another_plane = [&](int n) {  // planes of a ball stand side by side
+    return (n > planes_from_ && a_[at(n - 1)] == a_[at(n)]) ||
+           (n + 1 < pair_count() && a_[at(n + 1)] == a_[at(n)]);
+  };
+  bool corners = false;
+  for (int n = planes_from_; n < pair_count() && !corners; ++n)
+    corners = a_[at(n)] < parts.ball_count() && near_another_plane(n);
+  if (!corners && !parts.any_of_several_balls()) return;
   const auto bodies = [&](int n) {
     const int a = parts.body_of_ball(a_[at(n)]);
     if (n >= planes_from_) return std::pair(a, -1);
@@ -114,7 +121,7 @@ void BallContacts::group_pairs(const Parts& parts) {
   };
   const auto alone = [&](int n) {
     const auto [a, b] = bodies(n);
-    return parts.ball_count(a) == 1 && (b < 0 || parts.ball_count(b) == 1);
+    return parts.ball_count(a) == 1 && (b < 0 ? !near_another_plane(n) : parts.ball_count(b) == 1);
   };
   for (int n = 0; n < pair_count(); ++n)
     if (a_[at(n)] < parts.ball_count() && !alone(n)) grouped_.push_back(n);

@@ -117,6 +117,29 @@ TEST(Restitution, OfEveryShapeOnEverySurface) {
   }
 }
 
+/// Two walls that a ball meets at once are one surface to it, as they are in a mesh.
+TEST(Restitution, OfABallBetweenTwoPlanes) {
+  for (const double e : {0.1, 0.5, 0.9, 1.0})
+    for (const double degrees : {0.5, 2.0, 10.0, 25.0}) {
+      const Case c = elastic(e);
+      const Materials materials(c);
+      Particles p(Vec3(0, 0, 0), materials, c.contact);
+      const double lean = degrees * M_PI / 180;
+      for (const double side : {-1.0, 1.0}) {
+        WallSpec w = floor_at(0);
+        w.name = side < 0 ? "left" : "right";
+        w.normal = Vec3(side * std::sin(lean), 0, std::cos(lean));
+        p.add(make_wall(w, materials, ""));
+      }
+      Body ball = body_of("ball", make_sphere(10e-3), materials);
+      ball.position.z() = 5e-3 / std::cos(lean) + 1e-5;
+      ball.velocity.z() = -kSpeed;
+      p.add(ball);
+      collide(p);
+      EXPECT_NEAR(p.bodies()[0].velocity.z() / kSpeed, e, 0.02) << degrees << " degrees";
+    }
+}
+
 /// A corner of three or five edges on an edge, between four legs, or one on the other: no axis in common. As
 /// they are thrown here the impulse leans by 1 to 15 degrees and the bodies part sideways with 0.01 to 0.13
 /// m/s and spins of 5 to 35 rad/s, so the speed along z says nothing of restitution. Other places and turns
