@@ -34,7 +34,7 @@ const std::array<Part, 17> parts{{
     {sense_machine, {"sorter", "launch", "splitter", "valve", "jet", "boundary", "grid", "fluid"}},
     {sense_idle,
      {"boundary", "valve", "contact", "body", "wall", "splitter", "grains", "coupling", "sorter", "stream",
-      "flow"}},
+      "flow", "study"}},
 }};
 
 }  // namespace

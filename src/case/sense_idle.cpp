@@ -195,6 +195,13 @@ void sense_idle(const Case& c, Findings& found) {
   const auto table = [&](const std::string& name) { return Idle(c, name, found); };
   for (std::size_t n = 0; n < c.bodies.size(); ++n)
     look_at_body(c.bodies[n], table(fmt::format("body.{}", n)));
+  for (std::size_t n = 0; n < c.bodies.size() && !c.splitter.enabled; ++n)
+    table(fmt::format("body.{}", n))
+        .refuse({"wanted"}, "there is no plate to be wanted on a side of", "[splitter]",
+                "[splitter] distance = \"250 mm\"");
+  if (c.study.design == StudyDesign::grid || c.study.design == StudyDesign::list)
+    table("study").refuse({"samples"}, fmt::format("design is \"{}\"", word(c.study.design)),
+                          "a design that is drawn, or no samples", "design = \"latin-hypercube\"");
   for (std::size_t n = 0; n < c.walls.size(); ++n) look_at_wall(c.walls[n], table(fmt::format("wall.{}", n)));
   for (std::size_t f = 0; f < 6; ++f) {
     const BoundarySpec& face = c.boundary[f];

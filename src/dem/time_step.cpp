@@ -32,8 +32,11 @@ double contact_time(const Body& body, const Materials& materials, double velocit
   }
   if (!body.shape.polytopes().empty()) {
     const double size = std::cbrt(0.75 / std::numbers::pi * body.shape.mass_properties().volume);
-    const double face =
-        2 * (4.0 / 3.0) * stiffest.youngs * size / std::numbers::sqrt2;  // N/m, narrow_phase.cpp
+    // Stiffness of a face of the area pi s^2 (narrow_phase.cpp), and more of a larger one, N/m
+    double larger = 1.0;
+    for (const Polytope& p : body.shape.polytopes())
+      larger = std::max(larger, p.largest_face / (std::numbers::pi * size * size));
+    const double face = 2 * (4.0 / 3.0) * stiffest.youngs * size / std::numbers::sqrt2 * larger;
     time = std::min({time, 0.5 * std::numbers::pi * std::sqrt(mass / face),
                      rayleigh_time(size, m.density, m.youngs_modulus, m.poisson_ratio)});
   }

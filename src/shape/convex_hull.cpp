@@ -267,6 +267,15 @@ Polytope convex_hull(const std::vector<Vec3>& points) {
       throw InputError("the points are too nearly in a plane or line to span a solid",
                        {.expected = kSolidPoints});
   hold_by_ball(mass_mesh(triangles_of(result)).centre);
+  for (const Polytope::Face& f : result.faces) {
+    Vec3 twice(0, 0, 0);
+    const auto corner = [&](int n) -> const Vec3& {
+      return result.vertices[static_cast<std::size_t>(
+          result.corners[static_cast<std::size_t>(f.first + n % f.count)])];
+    };
+    for (int n = 0; n < f.count; ++n) twice += corner(n).cross(corner(n + 1));
+    result.largest_face = std::max(result.largest_face, 0.5 * std::abs(twice.dot(f.normal)));
+  }
   return result;
 }
 

@@ -39,6 +39,7 @@ Polytope polytope_box(const Vec3& half) {
   for (int f = 0; f < 6; ++f)
     p.faces.push_back({(f % 2 ? 1.0 : -1.0) * Vec3::Unit(f / 2), half[f / 2], 4 * f, 4});
   p.radius = half.norm();
+  p.largest_face = 4 * half.prod() / half.minCoeff();
   return p;
 }
 

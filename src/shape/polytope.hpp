@@ -21,10 +21,11 @@ struct Polytope {
   };
   std::vector<Vec3> vertices;
   std::vector<Face> faces;
-  std::vector<Face> seams;   ///< the parts of its faces behind which another part of the same solid goes on
-  std::vector<int> corners;  ///< indices of vertices, face after face; seams last
-  Vec3 centre{0, 0, 0};      ///< of mass, so inside it: of a sphere that holds it
-  double radius = 0.0;       ///< of that sphere
+  std::vector<Face> seams;    ///< the parts of its faces behind which another part of the same solid goes on
+  std::vector<int> corners;   ///< indices of vertices, face after face; seams last
+  Vec3 centre{0, 0, 0};       ///< of mass, so inside it: of a sphere that holds it
+  double radius = 0.0;        ///< of that sphere
+  double largest_face = 0.0;  ///< m2
 };
 
 /// Convex hull of the points; coplanar triangles become one face. Throws InputError where the points have no
