@@ -212,10 +212,9 @@ void sense_idle(const Case& c, Findings& found) {
   }
   look_at_valve(c.valve, table("valve"));
   look_at_plate(c.splitter, table("splitter"));
-  if (c.flow.solver == FlowSolver::none)
-    table("stream").refuse({"velocity", "reference_area", "average_from"},
-                           "nothing flows: solver is \"none\"", "a flow solver, or no [stream]",
-                           "[flow] solver = \"incompressible\"");
+  if (c.flow.solver == FlowSolver::none && c.stream.enabled)
+    found.error("stream", "[stream] does nothing here: nothing flows, solver is \"none\"",
+                "a flow solver, or no [stream]", "[flow] solver = \"incompressible\"");
   if (c.grains.empty())
     table("coupling")
         .refuse({"drag", "exchange", "kernel_width"}, "there are no [[grains]]",

@@ -22,6 +22,7 @@ constexpr int kFresh = 6;  // likewise
 
 constexpr double kTouching = 1e-3;  // of the size: bodies that overlap less only touch
 constexpr double kDeepDent = 0.1;   // of the smallest width
+constexpr double kGiven = 0.02;     // of what went through contacts
 constexpr double kFarLeap = 0.5;    // diameters; two such balls pass each other in one step
 
 void append(std::vector<double>& out, const Vec3& v) { out.insert(out.end(), v.data(), v.data() + 3); }
@@ -223,6 +224,11 @@ std::vector<std::string> Particles::warnings() const {
                     "deep are not to be trusted; a larger youngs_modulus makes them shallower",
                     bodies_[n].name, 1e3 * peaks_[n].overlap, 100 * share, 1e3 * width));
   }
+  if (-contact_work_ > kGiven * exchanged_)
+    sentences.push_back(fmt::format(
+        "contacts gave {:.3g} J more than they took, {:.0f} % of what went through them: their steps are too "
+        "long for how hard bodies are pressed; a smaller contact.time_step_fraction shortens them",
+        -contact_work_, -100 * contact_work_ / exchanged_));
   if (leap_ > kFarLeap)
     sentences.push_back(fmt::format(
         "a ball moved by {:.2g} of its diameters in one step of contacts: some may have passed through each "
