@@ -140,6 +140,8 @@ class Run {
     outputs().finish(clock_.time());
     Result r = result(RunEnd::decided);
     r.quantities = model_->result(r.time, r.steps, r.wall_time, r.operators);
+    const std::vector<std::string> warnings = model_->warnings();
+    if (!warnings.empty()) r.quantities["warnings"] = warnings;
     if (!output::undecided_bodies(r.quantities).empty()) {
       r.end = RunEnd::undecided;
       r.later_end = model_->later_end(r.time);
@@ -152,7 +154,7 @@ class Run {
       if (case_.output.report) output::write_report(archive_->directory().path());
     }
     if (context_.note)
-      for (const std::string& warning : model_->warnings()) context_.note("warning: " + warning);
+      for (const std::string& warning : warnings) context_.note("warning: " + warning);
     return r;
   }
 
