@@ -21,9 +21,9 @@ void check_names(const List& list, const std::string& section, Findings& found) 
       }
 }
 
-/// As check_names, for names that become part of a file name.
-constexpr std::size_t kLongestName = 100;
+inline constexpr std::size_t kLongestName = 100;  ///< that becomes part of a file name
 
+/// As check_names, for names that become part of a file name.
 template <class List>
 void check_file_names(const List& list, const std::string& section, Findings& found) {
   check_names(list, section, found);

@@ -41,11 +41,15 @@ std::string excerpt(const Place& place) {
 
 }  // namespace
 
-std::string place_line(const std::string& key, const Vec3& place) {
+std::string place_text(const Vec3& place) {
   const auto length = [&](int d) {  // to a micrometre: it is an example
     return format_quantity(std::round(1e6 * place[d]) / 1e6, Dimension::length);
   };
-  return fmt::format("{} = [\"{}\", \"{}\", \"{}\"]", key, length(0), length(1), length(2));
+  return fmt::format("[\"{}\", \"{}\", \"{}\"]", length(0), length(1), length(2));
+}
+
+std::string place_line(const std::string& key, const Vec3& place) {
+  return fmt::format("{} = {}", key, place_text(place));
 }
 
 CaseError::CaseError(std::vector<Problem> list) : InputError(render(list)), problems(std::move(list)) {}

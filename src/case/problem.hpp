@@ -33,6 +33,8 @@ std::vector<Problem> problems_of(const InputError& refusal);
 /// So many that nobody reads one more.
 inline bool enough(const std::vector<Problem>& problems) { return problems.size() >= 1000; }
 
+/// For an example: ["10 mm", "0 mm", "5 mm"].
+std::string place_text(const Vec3& place);
 /// A line for an example: key = ["10 mm", "0 mm", "5 mm"].
 std::string place_line(const std::string& key, const Vec3& place);
 

@@ -117,12 +117,12 @@ class ValueReader {
   bool without_escapes(const Node& node, const std::string& text) {
     if (std::none_of(text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20; }))
       return true;
-    std::string slashes(node.place.text());
-    std::replace(slashes.begin(), slashes.end(), '\\', key_.file ? '/' : ' ');
+    std::string mended(node.place.text());
+    std::replace(mended.begin(), mended.end(), '\\', key_.file ? '/' : ' ');
     return fail(
         node,
         "a \\ in double quotes begins a sign of its own, such as \\n or \\r; in the name of a file, write /",
-        "", slashes);
+        "", mended);
   }
 
   template <class T>

@@ -1,4 +1,5 @@
 #include "case/schema.hpp"
+#include "case/size_law.hpp"
 
 /// A whole sorter: feed, camera, controller, manifold.
 namespace ejecta {
@@ -52,7 +53,7 @@ std::vector<Key> keys(FeedSpec& s) {
 }
 
 std::vector<Key> keys(ParticleClassSpec& s) {
-  return {
+  std::vector<Key> list{
       {.name = "name", .slot = &s.name, .help = "Name", .required = true, .example = "\"ore\""},
       {.name = "share",
        .slot = &s.share,
@@ -62,52 +63,29 @@ std::vector<Key> keys(ParticleClassSpec& s) {
        .example = "0.3"},
       {"eject", &s.eject, none, anything, "It belongs in the ejected product", ""},
       decisive(Key{"density", &s.density, density, positive, "Density", "paper, Table 2"}),
-      {"form", choice(s.form), none, anything, "What its particles look like", ""},
-      {"sizes", choice(s.sizes), none, anything, "How its sizes are distributed", ""},
-      {.name = "size",
-       .slot = &s.size,
-       .dimension = length,
-       .bounds = positive,
-       .help = "The middle one of a particle's three dimensions, what a sieve tells",
-       .unset = "from `sieves`",
-       .example = "\"10 mm\""},
-      {.name = "size_to",
-       .slot = &s.size_to,
-       .dimension = length,
-       .bounds = positive,
-       .help = "Upper end of sizes that are \"uniform\"",
-       .unset = "needed for these",
-       .example = "\"20 mm\""},
-      {.name = "spread",
-       .slot = &s.spread,
-       .bounds = positive,
-       .help = "\"lognormal\": standard deviation of ln(size); \"rosin-rammler\": the exponent",
-       .unset = "needed for these",
-       .example = "0.2"},
-      {.name = "sieves",
-       .slot = &s.sieves,
-       .help =
-           "CSV file with the columns size and finer (share of the mass below it, 0 to 1), sizes ascending",
-       .unset = "none",
-       .example = "\"sieves.csv\"",
-       .file = true},
-      {"elongation", &s.elongation, none, {0.1, 1.0}, "Middle over longest dimension", "Zingg 1935"},
-      {"flatness", &s.flatness, none, {0.05, 1.0}, "Shortest over middle dimension", "Zingg 1935"},
-      {.name = "file",
-       .slot = &s.file,
-       .help = "STL of a particle, for the form \"mesh\"",
-       .unset = "none",
-       .example = "\"rock.stl\"",
-       .file = true},
-      {"signal", &s.signal, none, anything, "What the sensors read of it, on a scale of one's own", ""},
-      {"signal_spread", &s.signal_spread, none, not_negative,
-       "Standard deviation of that from particle to particle", ""},
-      {.name = "read_as_eject",
-       .slot = &s.read_as_eject,
-       .bounds = fraction,
-       .help = "Share of its particles that is read as to be ejected: a given confusion instead of signals",
-       .unset = "by signals",
-       .example = "0.02"}};
+      {"form", choice(s.form), none, anything, "What its particles look like", ""}};
+  append_size_keys(list, s, "The middle one of a particle's three dimensions, what a sieve tells",
+                   {"\"10 mm\"", "\"20 mm\""});
+  list.insert(
+      list.end(),
+      {{"elongation", &s.elongation, none, {0.1, 1.0}, "Middle over longest dimension", "Zingg 1935"},
+       {"flatness", &s.flatness, none, {0.05, 1.0}, "Shortest over middle dimension", "Zingg 1935"},
+       {.name = "file",
+        .slot = &s.file,
+        .help = "STL of a particle, for the form \"mesh\"",
+        .unset = "none",
+        .example = "\"rock.stl\"",
+        .file = true},
+       {"signal", &s.signal, none, anything, "What the sensors read of it, on a scale of one's own", ""},
+       {"signal_spread", &s.signal_spread, none, not_negative,
+        "Standard deviation of that from particle to particle", ""},
+       {.name = "read_as_eject",
+        .slot = &s.read_as_eject,
+        .bounds = fraction,
+        .help = "Share of its particles that is read as to be ejected: a given confusion instead of signals",
+        .unset = "by signals",
+        .example = "0.02"}});
+  return list;
 }
 
 std::vector<Key> keys(CameraSpec& s) {

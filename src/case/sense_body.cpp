@@ -29,23 +29,7 @@ void require_material(const Case& c, const std::string& key, const std::string& 
   found.list.back().nearest = nearest(name, known);
 }
 
-void require_file(const Case& c, const std::string& key, const std::string& file, const std::string& kind,
-                  Findings& found) {
-  std::error_code ignored;
-  if (file.empty())
-    found.error(key, fmt::format("a {} needs its file", kind), "a file beside the case file",
-                "file = \"lump.stl\"");
-  else if (!std::filesystem::is_regular_file(beside_case(c, file), ignored))
-    found.error(key, fmt::format("there is no file \"{}\"", beside_case(c, file)),
-                "a file, relative to the folder of the case", "file = \"lump.stl\"");
-}
-
-/// The place, brought into the middle of an interval along one axis.
-Vec3 within(Vec3 place, int axis, double low, double high) {
-  place[axis] = 0.5 * (low + high);
-  return place;
-}
-
+constexpr const char* kMesh = "file = \"lump.stl\"";
 constexpr std::int64_t kMostSpheres = 4096;  ///< of a cluster: what they overlap is found pair by pair
 
 /// Spheres in a row that touch or overlap fill the length; gaps would make the cluster fall apart.
@@ -90,7 +74,7 @@ void check_shape(const Case& c, const BodySpec& b, const std::string& key, Findi
       break;
     case ShapeKind::multisphere:
       if (b.fit_error > 0.0) {
-        require_file(c, key + ".file", b.file, "multisphere that is fitted", found);
+        require_file(c, key + ".file", b.file, "a multisphere that is fitted needs its file", kMesh, found);
         break;
       }
       if (b.spheres.empty())
@@ -108,12 +92,12 @@ void check_shape(const Case& c, const BodySpec& b, const std::string& key, Findi
             R"(["0 mm", "0 mm", "9 mm"]])");
       break;
     case ShapeKind::mesh:
-      if (b.files.empty()) require_file(c, key + ".file", b.file, "mesh", found);
+      if (b.files.empty()) require_file(c, key + ".file", b.file, "a mesh needs its file", kMesh, found);
       if (!b.files.empty() && !b.file.empty())
         found.error(key + ".files", "a mesh has either `file` or `files`", "one of them",
                     fmt::format("file = \"{}\"", b.files.front()));
       for (std::size_t n = 0; n < b.files.size(); ++n) {
-        require_file(c, key + ".files", b.files[n], "mesh", found);
+        require_file(c, key + ".files", b.files[n], "a mesh needs its files", kMesh, found);
         if (std::find(b.files.begin(), b.files.begin() + static_cast<std::ptrdiff_t>(n), b.files[n]) !=
             b.files.begin() + static_cast<std::ptrdiff_t>(n))
           found.error(key + ".files",
@@ -192,16 +176,17 @@ void sense_shapes(const Case& c, Findings& found) {
     const std::vector<double>* sides[] = {&c.domain.x, &c.domain.y, &c.domain.z};
     for (int d = 0; d < 3 && !b.on_belt && b.motion != Motion::fixed; ++d) {
       const std::string axis(1, "xyz"[d]);
+      Vec3 within = b.position;
       if (sides[d]->size() != 2 || std::count(c.domain.periodic.begin(), c.domain.periodic.end(), axis))
         continue;
       if (b.position[d] >= sides[d]->front() && b.position[d] < sides[d]->back()) continue;
+      within[d] = 0.5 * (sides[d]->front() + sides[d]->back());
       found.error(
           key + ".position",
           fmt::format("the body starts outside of the domain, whose {} goes from {:.4g} to {:.4g} mm: it "
                       "would be taken away at once",
                       axis, 1e3 * sides[d]->front(), 1e3 * sides[d]->back()),
-          "a place within domain." + axis,
-          place_line("position", within(b.position, d, sides[d]->front(), sides[d]->back())));
+          "a place within domain." + axis, place_line("position", within));
     }
     if (b.enters_at.value_or(0.0) >= c.run.end_time)
       found.warning(key + ".enters_at", "the body never comes in: the run ends before",
@@ -244,7 +229,8 @@ void sense_walls(const Case& c, Findings& found) {
     if (w.normal.norm() == 0.0)
       found.error(key + ".normal", "a wall without direction", "a list of 3 numbers, not all 0",
                   "normal = [0, 0, 1]");
-    if (w.kind == WallKind::mesh) require_file(c, key + ".file", w.file, "mesh", found);
+    if (w.kind == WallKind::mesh)
+      require_file(c, key + ".file", w.file, "a mesh needs its file", kMesh, found);
     const Vec3 normal = w.normal.normalized(), across = w.velocity.dot(normal) * normal;
     if (w.kind != WallKind::mesh && w.kind != WallKind::box && across.norm() > kLevel * w.velocity.norm()) {
       const Vec3 along = w.velocity - across;

@@ -87,8 +87,9 @@ void check_wall_motion(const Case& c, std::size_t f, const std::string& key, Fin
   constexpr double kThrough = 1e-6;  // of its speed: round-off of formulas
   std::array<Expression, 3> velocity;
   for (std::size_t d = 0; d < 3; ++d) velocity[d] = Expression((*face.state.velocity)[d]);
+  const FacePlaces places = places_on(c, *box, f);
   for (const double t : {0.0, 0.31 * c.run.end_time, 0.73 * c.run.end_time})
-    for (const Vec3& x : places_on(c, *box, f).at) {
+    for (const Vec3& x : places.at) {
       Vec3 v;
       for (int d = 0; d < 3; ++d) v[d] = velocity[static_cast<std::size_t>(d)](x.x(), x.y(), x.z(), t);
       const double through = v[static_cast<int>(f / 2)];
@@ -248,18 +249,24 @@ void check_way_out(const Case& c, const Box& box, Findings& found) {
     const BoundarySpec& face = c.boundary[f];
     const int a = static_cast<int>(f / 2);
     if (c.grid.geometry == Geometry::axisymmetric && (a == 1 || (f == 0 && box.low.x() == 0.0))) continue;
+    const auto speed_of = [&](const StateSpec& s) {
+      return s.velocity ? Expression((*s.velocity)[static_cast<std::size_t>(a)]) : Expression();
+    };
+    const Expression own = speed_of(face.state);
+    std::vector<Expression> of_patches;
+    for (const PatchSpec& p : face.patches) of_patches.push_back(speed_of(p.state));
     const FacePlaces places = places_on(c, box, f);
     double through = 0.0;
     for (const Vec3& x : places.at) {
       BoundaryType type = face.type;
-      const StateSpec* state = &face.state;
-      for (const PatchSpec& p : face.patches)
-        if ((x - p.centre).norm() <= p.radius) type = p.type, state = &p.state;
+      const Expression* speed = &own;
+      for (std::size_t n = 0; n < of_patches.size(); ++n)
+        if ((x - face.patches[n].centre).norm() <= face.patches[n].radius)
+          type = face.patches[n].type, speed = &of_patches[n];
       if (is_open(type)) return;
       if (type == BoundaryType::jet) through = -1.0;  // inwards, however much
-      if (type == BoundaryType::velocity && state->velocity)
-        through += (f % 2 ? 1.0 : -1.0) * places.share *
-                   Expression((*state->velocity)[static_cast<std::size_t>(a)])(x.x(), x.y(), x.z(), 0.0);
+      if (type == BoundaryType::velocity)
+        through += (f % 2 ? 1.0 : -1.0) * places.share * (*speed)(x.x(), x.y(), x.z(), 0.0);
     }
     net += through;
     all += std::abs(through);

@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 #include "base/error.hpp"
 #include "base/text.hpp"
 #include "case/extent.hpp"
 #include "case/findings.hpp"
+#include "case/load.hpp"
 #include "case/names.hpp"
 #include "case/size_distribution.hpp"
 #include "case/size_law.hpp"
@@ -24,19 +26,25 @@ constexpr double kWideKernel = 6.0;     // diameters: over several cells of less
 constexpr double kDilute = 0.01;        // solids: more is not one grain alone
 
 /// Rosin-Rammler and sieves spread over decades: beyond the largest hundredth, by number, single grains are.
-double largest_size(const Case& c, const GrainsSpec& g) {
+double largest_size(const GrainsSpec& g, const SizeDistribution& sizes) {
   if (g.sizes == SizeLaw::lognormal || g.sizes == SizeLaw::one) return g.size;
-  return size_distribution(g, folder_of(c)).quantile(g.sizes == SizeLaw::uniform ? 1.0 : 0.99);
+  return sizes.quantile(g.sizes == SizeLaw::uniform ? 1.0 : 0.99);
 }
 
-void check_sizes_of(const Case& c, const GrainsSpec& g, const std::string& at, Findings& found) {
+/// Nothing where they are not sound, which is told.
+std::optional<SizeDistribution> sizes_of(const Case& c, const GrainsSpec& g, const std::string& at,
+                                         Findings& found) {
   const std::size_t before = found.list.size();
   check_size_law(c, g, at, "1 mm", found);
-  if (found.list.size() > before) return;
+  if (found.list.size() > before) return std::nullopt;
   try {
-    size_distribution(g, folder_of(c));
+    return size_distribution(g, folder_of(c));
   } catch (const InputError& e) {
-    found.error(at + "sieves", e.what(), e.advice.expected, e.advice.example);
+    for (Problem p : problems_of(e)) {
+      p.key = at + "sieves";
+      found.list.push_back(std::move(p));
+    }
+    return std::nullopt;
   }
 }
 
@@ -52,28 +60,27 @@ void check_amount(const GrainsSpec& g, const std::string& at, Findings& found) {
 }
 
 /// Part of the region that is grains.
-double packing_of(const Case& c, const GrainsSpec& g) {
+double packing_of(const Case& c, const GrainsSpec& g, const SizeDistribution& sizes) {
   if (g.solids_fraction) return *g.solids_fraction;
   const Vec3 edges = (*g.region)[1] - (*g.region)[0];
   double density = g.density.value_or(0.0);
   for (const MaterialSpec& m : c.materials)
     if (!g.density && (m.name == g.material)) density = m.density;
-  const double volume =
-      g.mass ? *g.mass / density
-             : g.count * std::numbers::pi / 6 * size_distribution(g, folder_of(c)).mean_power(3);
+  const double volume = g.mass ? *g.mass / density : g.count * std::numbers::pi / 6 * sizes.mean_power(3);
   return volume / edges.prod();
 }
 
 std::string region_line(const Vec3& low, const Vec3& high) {
-  return fmt::format("region = [{}, {}]", place_line("", low).substr(3), place_line("", high).substr(3));
+  return fmt::format("region = [{}, {}]", place_text(low), place_text(high));
 }
 
-void check_place(const Case& c, const GrainsSpec& g, const std::string& at, Findings& found) {
+void check_place(const Case& c, const GrainsSpec& g, const SizeDistribution& sizes, const std::string& at,
+                 Findings& found) {
   if (!g.region)
     return found.error(at + "region", "it is not said where the grains start", "two corners of a box",
                        R"(region = [["0 mm", "0 mm", "0 mm"], ["10 mm", "10 mm", "5 mm"]])");
   const Vec3 &low = (*g.region)[0], &high = (*g.region)[1];
-  const double d = largest_size(c, g);
+  const double d = largest_size(g, sizes);
   if (!((high - low).minCoeff() >= d * (1 - 1e-9)))
     return found.error(
         at + "region",
@@ -93,7 +100,7 @@ void check_place(const Case& c, const GrainsSpec& g, const std::string& at, Find
           "a region inside the box, or a larger box", region_line(box->low, box->high));
     }
   if (g.over > 0.0) return;  // they go on while others come
-  const double packed = packing_of(c, g);
+  const double packed = packing_of(c, g, sizes);
   if (packed > kClosePacking)
     found.error(at + "region",
                 fmt::format("grains would fill {:.3f} of the region: closest packing is {:.3f}", packed,
@@ -106,7 +113,8 @@ void check_place(const Case& c, const GrainsSpec& g, const std::string& at, Find
                 "\"lattice\", or fewer grains", "packing = \"lattice\"");
 }
 
-void check_cells(const Case& c, const GrainsSpec& g, const std::string& at, Findings& found) {
+void check_cells(const Case& c, const GrainsSpec& g, const SizeDistribution& sizes, const std::string& at,
+                 Findings& found) {
   double narrowest = 1e300;
   for (std::size_t a = 0; a < 3; ++a) {
     const AxisSpec& axis = c.grid.axis[a];
@@ -114,7 +122,7 @@ void check_cells(const Case& c, const GrainsSpec& g, const std::string& at, Find
     if (centres.size() < 2) continue;
     for (const double x : centres) narrowest = std::min(narrowest, widest_cell(axis, x, x));
   }
-  const double d = largest_size(c, g), cells = narrowest / d;
+  const double d = largest_size(g, sizes), cells = narrowest / d;
   if (cells >= kCellsOfGrains * (1 - 1e-9) || narrowest > 1e299) return;
   if (c.coupling.kernel_width >= kWideKernel && cells >= 1.0) return;
   found.error(
@@ -176,18 +184,19 @@ void sense_grains(const Case& c, Findings& found) {
     if (g.held && !g.velocity.isZero())
       found.error(at + "velocity", "`velocity` does nothing here: the grains are held",
                   "held = false, or no velocity", "held = false");
-    check_sizes_of(c, g, at, found);
+    const std::optional<SizeDistribution> drawn = sizes_of(c, g, at, found);
     check_amount(g, at, found);
     if (found.list.size() > before) continue;
-    check_place(c, g, at, found);
-    if (flows) check_cells(c, g, at, found);
+    const SizeDistribution& sizes = *drawn;
+    check_place(c, g, sizes, at, found);
+    if (flows) check_cells(c, g, sizes, at, found);
     const bool alone =
         c.coupling.drag == GrainDragLaw::schiller_naumann || c.coupling.drag == GrainDragLaw::stokes;
-    if (flows && alone && g.region && g.over == 0.0 && packing_of(c, g) > kDilute)
+    if (flows && alone && g.region && g.over == 0.0 && packing_of(c, g, sizes) > kDilute)
       found.warning("coupling.drag",
                     fmt::format("\"{}\" is the drag of one grain alone, but grains fill {:.3f} of the region "
                                 "of \"{}\"",
-                                word(c.coupling.drag), packing_of(c, g), g.name),
+                                word(c.coupling.drag), packing_of(c, g, sizes), g.name),
                     "the drag of grains among others", "drag = \"di-felice\"");
   }
 }

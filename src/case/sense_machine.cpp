@@ -9,6 +9,7 @@
 #include "case/extent.hpp"
 #include "case/findings.hpp"
 #include "case/load.hpp"
+#include "case/required_file.hpp"
 #include "case/size_law.hpp"
 #include "case/words.hpp"
 
@@ -52,7 +53,8 @@ void check_sizes(const Case& c, std::size_t n, Findings& found) {
                 "a size below sorter.belt_width",
                 fmt::format("size = \"{:.3g} mm\"", 100.0 * c.sorter.belt_width));
   check_size_law(c, k, at, "20 mm", found);
-  if (k.form == ParticleForm::mesh) need_file(c, at + "file", k.file, "file = \"rock.stl\"", found);
+  if (k.form == ParticleForm::mesh)
+    require_file(c, at + "file", k.file, "missing: the file", "file = \"rock.stl\"", found);
   else if (!k.file.empty())
     found.error(at + "file", "`file` does nothing here: it belongs to form = \"mesh\"",
                 "form = \"mesh\", or no file", "form = \"mesh\"");
@@ -197,14 +199,9 @@ void check_devices(const Case& c, Findings& found) {
                     fmt::format("`{}` does nothing here: it belongs to presentation = \"feeder\"", key),
                     fmt::format("presentation = \"feeder\", or no {}", key), "presentation = \"feeder\"");
   }
-  if (c.feed.presentation == Presentation::file) {
-    std::error_code none;
-    if (c.feed.file.empty() || !std::filesystem::is_regular_file(beside_case(c, c.feed.file), none))
-      found.error("sorter.feed.file",
-                  c.feed.file.empty() ? "missing: the file with the places"
-                                      : fmt::format("there is no file \"{}\"", beside_case(c, c.feed.file)),
-                  "a CSV file, relative to the folder of the case", "file = \"log.csv\"");
-  }
+  if (c.feed.presentation == Presentation::file)
+    require_file(c, "sorter.feed.file", c.feed.file, "missing: the file with the places",
+                 "file = \"log.csv\"", found);
 }
 
 }  // namespace

@@ -90,14 +90,9 @@ void sense_map(const Case& c, Findings& found) {
   if (!c.map.enabled) return;
   if (!has_plate_and_launch(c, found) || !has_body(c, found)) return;
   check_window(c, found);
-  if (!c.map.measured.empty()) {
-    std::error_code none;
-    const std::string file = beside_case(c, c.map.measured);
-    if (!std::filesystem::is_regular_file(file, none))
-      found.error("map.measured", fmt::format("there is no file \"{}\"", file),
-                  "a file, relative to the folder of the case", "measured = \"outline.csv\"");
-    else read_outline_file(file, found.list);
-  }
+  if (!c.map.measured.empty() && require_file(c, "map.measured", c.map.measured, "missing: the file",
+                                              "measured = \"outline.csv\"", found))
+    read_outline_file(beside_case(c, c.map.measured), found.list);
   const std::size_t body = mapped_body(c);
   if (c.map.symmetric.value_or(false))
     if (const Symmetry s = symmetry_across(c, body); !s.refused.empty())

@@ -52,11 +52,9 @@ void check_path(const Case& c, const BodySpec& b, const std::string& key, Findin
     return found.error(path_key, "the path says where the body is at all times of the run",
                        "no release_at, enters_at or copies; equal places in the path where it rests",
                        fmt::format("path = \"{}\"", b.path));
+  if (!require_file(c, path_key, b.path, "missing: the file", "path = \"path.csv\"", found)) return;
   std::error_code ignored;
   const std::string file = beside_case(c, b.path);
-  if (!std::filesystem::is_regular_file(file, ignored))
-    return found.error(path_key, fmt::format("there is no file \"{}\"", file),
-                       "a file, relative to the folder of the case", "path = \"path.csv\"");
   // Devices and the like have no size: they could be read for ever.
   if (const auto size = std::filesystem::file_size(file, ignored); size == 0 || size > largest_file)
     return found.error(path_key,

@@ -51,11 +51,8 @@ void sense_records(const Case& c, Findings& found) {
       found.error(fmt::format("measured.{}.of", n),
                   fmt::format("nothing is recorded under the name \"{}\"", m.of),
                   "\"centreline\", or the name of a [[line]] or [[probe]]", "of = \"centreline\"");
-    std::error_code ignored;
-    if (!std::filesystem::is_regular_file(beside_case(c, m.file), ignored))
-      found.error(fmt::format("measured.{}.file", n),
-                  fmt::format("there is no file \"{}\"", beside_case(c, m.file)),
-                  "a file, relative to the folder of the case", "file = \"pitot.csv\"");
+    require_file(c, fmt::format("measured.{}.file", n), m.file, "missing: the file", "file = \"pitot.csv\"",
+                 found);
   }
   const std::optional<Box> box = grid_box(c);
   if (c.flow.solver == FlowSolver::none) {

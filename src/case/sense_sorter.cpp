@@ -66,7 +66,7 @@ void check_placing(const Case& c, Findings& found) {
     const Vec3 in_plane = nozzle - along.dot(nozzle - c.jet.nozzle) * along;
     if (std::abs(jet_height(other) - jet_height(c)) > 1e-6 * std::abs(jet_height(c)) + 1e-9)
       found.error("jet.more_nozzles", "the orifices are not at one distance from the face", "one plane",
-                  fmt::format("more_nozzles = [{}]", place_line("", in_plane).substr(3)));
+                  fmt::format("more_nozzles = [{}]", place_text(in_plane)));
   }
   if (c.jet.kind == JetKind::computed && jet_height(c) <= 0.0)
     found.error("jet.nozzle", "the face through which the jet enters does not lie ahead of its orifice",
@@ -82,14 +82,9 @@ void check_placing(const Case& c, Findings& found) {
 
 void sense_sorter(const Case& c, Findings& found) {
   const ValveSpec& v = c.valve;
-  std::error_code ignored;
-  if (v.shape == ValveShape::trace && v.trace.empty())
-    found.error("valve.trace", "the shape \"trace\" needs its file", "a CSV file beside the case file",
-                "trace = \"opening.csv\"");
-  else if (v.shape == ValveShape::trace &&
-           !std::filesystem::is_regular_file(beside_case(c, v.trace), ignored))
-    found.error("valve.trace", fmt::format("there is no file \"{}\"", beside_case(c, v.trace)),
-                "a file, relative to the folder of the case", "trace = \"opening.csv\"");
+  if (v.shape == ValveShape::trace)
+    require_file(c, "valve.trace", v.trace, "the shape \"trace\" needs its file", "trace = \"opening.csv\"",
+                 found);
   if (has_jet(c)) {
     if (v.shape != ValveShape::trace && v.duration <= 0.0)
       found.error("valve.duration", "the valve never opens", "a time, more than 0", "duration = \"8 ms\"");

@@ -52,7 +52,8 @@ SieveAnalysis read_sieves(const std::string& file) {
                                    .example_head = "size [mm], finer",
                                    .example_row = "10, 0"},
                                   problems);
-  if (!problems.empty()) throw InputError(render(problems));
+  for (Problem& p : problems) p.key = "sieves";
+  if (!problems.empty()) throw CaseError(problems);
   SieveAnalysis a;
   for (const auto& row : table.rows) {
     a.size.push_back(row[0]);

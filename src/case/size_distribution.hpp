@@ -1,4 +1,5 @@
 #pragma once
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -28,7 +29,7 @@ class SizeDistribution {
 /// Of a section with the keys `sizes`, `size`, `size_to`, `spread` and `sieves`, a file beside the case.
 template <class Spec>
 SizeDistribution size_distribution(const Spec& s, const std::string& folder) {
-  return {s.sizes, s.size, s.size_to, s.spread, folder.empty() ? s.sieves : folder + "/" + s.sieves};
+  return {s.sizes, s.size, s.size_to, s.spread, (std::filesystem::path(folder) / s.sieves).string()};
 }
 
 }  // namespace ejecta

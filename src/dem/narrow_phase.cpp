@@ -91,6 +91,9 @@ std::span<const int> corners_of(const Polytope& p, const Polytope::Face& f) {
   return std::span(p.corners).subspan(static_cast<std::size_t>(f.first), static_cast<std::size_t>(f.count));
 }
 
+/// Whether a face is of the far side, seen along `along`.
+bool is_far(const Polytope::Face& f, const Vec3& along) { return f.normal.dot(along) < kFarSide; }
+
 /// Whether a reaches as deep into b (in axes that `rotation` and `shift` take to those of a), along -out, as
 /// the first corner of b's far side lies. Above that depth b is the same without its far side: a straight way
 /// from a point of it to what was left out would cross that side there. Where the far side runs into the near
@@ -106,7 +109,7 @@ bool reaches_far_side(const Polytope& b, const Mat3& rotation, const Vec3& shift
     if (f.normal.dot(along) > kNearSide)
       for (const int v : corners_of(b, f)) is_near[static_cast<std::size_t>(v)] = true;
   return std::any_of(b.faces.begin(), b.faces.end(), [&](const Polytope::Face& f) {
-    if (!(f.normal.dot(along) < kFarSide)) return false;
+    if (!is_far(f, along)) return false;
     const auto corners = corners_of(b, f);
     return std::any_of(corners.begin(), corners.end(), [&](int v) {
       const std::size_t n = static_cast<std::size_t>(v);
@@ -117,15 +120,15 @@ bool reaches_far_side(const Polytope& b, const Mat3& rotation, const Vec3& shift
 
 /// Planes along `along` through the edges between the faces of the far side of a solid and its others: what
 /// goes on behind it is as wide as it is. In the solid's axes.
-template <class IsFar, class Add>
-void for_each_outline(const Polytope& p, const Vec3& along, const IsFar& is_far, const Add& add) {
+template <class Add>
+void for_each_outline(const Polytope& p, const Vec3& along, const Add& add) {
   for (const Polytope::Face& f : p.faces) {
-    if (!is_far(f)) continue;
+    if (!is_far(f, along)) continue;
     const auto corners = corners_of(p, f);
     for (std::size_t c = 0; c < corners.size(); ++c) {
       const int from = corners[c], to = corners[(c + 1) % corners.size()];
       const bool inner = std::any_of(p.faces.begin(), p.faces.end(), [&](const Polytope::Face& g) {
-        if (&g == &f || !is_far(g)) return false;
+        if (&g == &f || !is_far(g, along)) return false;
         const auto others = corners_of(p, g);
         for (std::size_t n = 0; n < others.size(); ++n)
           if (others[n] == to && others[(n + 1) % others.size()] == from) return true;
@@ -149,7 +152,6 @@ bool without_far_side(const Polytope& b, const Mat3& rotation, const Vec3& shift
   planes.clear();
   if (!reaches_far_side(b, rotation, shift, out, a)) return false;
   const Vec3 along = rotation.transpose() * out;
-  const auto is_far = [&](const Polytope::Face& f) { return f.normal.dot(along) < kFarSide; };
   const auto in_a = [&](const Vec3& own, double offset) {
     const Vec3 normal = rotation * own;
     return HalfSpace{normal, offset + normal.dot(shift)};
@@ -157,12 +159,11 @@ bool without_far_side(const Polytope& b, const Mat3& rotation, const Vec3& shift
   bool pierced = false;
   for (const Polytope::Face& f : b.faces) {
     const HalfSpace plane = in_a(f.normal, f.offset);
-    if (is_far(f)) pierced = pierced || beyond(a, plane);
+    if (is_far(f, along)) pierced = pierced || beyond(a, plane);
     else planes.push_back(plane);
   }
   if (!pierced || planes.empty()) return false;
-  for_each_outline(b, along, is_far,
-                   [&](const Vec3& n, double offset) { planes.push_back(in_a(n, offset)); });
+  for_each_outline(b, along, [&](const Vec3& n, double offset) { planes.push_back(in_a(n, offset)); });
   return true;
 }
 

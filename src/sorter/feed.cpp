@@ -279,11 +279,11 @@ std::vector<Problem> check_feed(const Case& c) {
     try {
       classes.emplace_back(c.classes[k], folder_of(c), c.sorter.seed);
     } catch (const InputError& e) {
-      problems.push_back(
-          {.key = fmt::format("sorter.class.{}.{}", k, e.advice.key.empty() ? "form" : e.advice.key),
-           .what = e.what(),
-           .expected = e.advice.expected,
-           .example = e.advice.example});
+      for (Problem p : problems_of(e)) {
+        const std::string own = p.key.empty() ? e.advice.key : p.key;
+        p.key = fmt::format("sorter.class.{}.{}", k, own.empty() ? "form" : own);
+        problems.push_back(std::move(p));
+      }
       continue;
     }
     const double least = classes.back().size_at(0.01),

@@ -369,18 +369,6 @@ Json study_header(const std::string& kind, const Case& base) {
           {"input_sha256", sha256_hex(write_case(c) + output::digests_of(files_of(c)).dump())}};
 }
 
-namespace {
-
-/// Names of all single values of a result.
-void list_names(const Json& value, const std::string& at, std::vector<std::string>& names) {
-  if (!value.is_structured()) return names.push_back(at);
-  std::size_t n = 0;
-  for (const auto& [key, child] : value.items())
-    list_names(child, at + "/" + (value.is_array() ? std::to_string(n++) : key), names);
-}
-
-}  // namespace
-
 std::vector<std::string> unknown_quantities(const TaskStore& store) {
   const std::vector<TaskState> states = store.states();
   std::set<std::string> wanted;
@@ -390,7 +378,9 @@ std::vector<std::string> unknown_quantities(const TaskStore& store) {
     if (states[n] != TaskState::done) continue;
     const Json result = store.result(n).value("result", Json());
     std::erase_if(wanted, [&](const std::string& q) { return result.contains(Json::json_pointer(q)); });
-    if (names.empty()) list_names(result, "", names);
+    if (!names.empty()) continue;
+    const Json single = result.flatten();
+    for (const auto& [name, value] : single.items()) names.push_back(name);
   }
   std::vector<std::string> told;
   for (const std::string& q : wanted) {

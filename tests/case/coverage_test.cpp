@@ -9,6 +9,7 @@
 #include "case/load.hpp"
 #include "case/node.hpp"
 #include "case/toml.hpp"
+#include "case/write.hpp"
 
 using namespace ejecta;
 namespace fs = std::filesystem;
@@ -43,6 +44,17 @@ TEST(ShippedCases, AllLoad) {
   for (const fs::path& path : shipped_cases())
     if (path.parent_path().filename() != "setup")  // what cases extend need not be whole
       EXPECT_NO_THROW(load_case(path.string())) << path;
+}
+
+/// As a run writes it, with its files by their whole paths.
+TEST(ShippedCases, LoadAsResolvedFromAnotherFolder) {
+  for (const fs::path& path : shipped_cases()) {
+    if (path.parent_path().filename() == "setup") continue;
+    const Case c = load_case(path.string());
+    if (c.campaign.enabled) continue;  // a campaign is no run
+    const std::string resolved = write_case(with_absolute_files(c));
+    EXPECT_NO_THROW(parse_case(resolved, "/another/folder/case.toml")) << path;
+  }
 }
 
 TEST(ShippedCases, ExerciseEveryKey) {

@@ -32,6 +32,15 @@ nlohmann::ordered_json figures_of(Result r) {
   return r.quantities;
 }
 
+/// How a run ends that is stopped after four steps.
+RunEnd end_of_four_steps(const Case& c, const RunFiles& files) {
+  std::int64_t step = 0;
+  return run(c, {.files = files,
+                 .observe = [&](const Moment& m) { step = m.step; },
+                 .stop = [&] { return step == 4; }})
+      .end;
+}
+
 TEST(Run, SideBySideGivesTheBitsOfEachAlone) {
   const std::vector<double> pressures{500, 600, 700};
   std::vector<nlohmann::ordered_json> alone, together(pressures.size());
@@ -148,12 +157,7 @@ report = false
   const auto files = [&](bool resume) {
     return RunFiles{.directory = place, .resume = resume, .here = "again"};
   };
-  std::int64_t step = 0;
-  ASSERT_EQ(run(c, {.files = files(false),
-                    .observe = [&](const Moment& m) { step = m.step; },
-                    .stop = [&] { return step == 4; }})
-                .end,
-            RunEnd::stopped);
+  ASSERT_EQ(end_of_four_steps(c, files(false)), RunEnd::stopped);
   mesh(-0.4);
   try {
     run(c, {.files = files(true)});
@@ -184,12 +188,7 @@ TEST(Run, IsNotResumedWithATraceOrJetThatHasChanged) {
   };
   write("opening.csv", opening);
   write("jet.toml", jet);
-  std::int64_t step = 0;
-  ASSERT_EQ(run(c, {.files = files(false),
-                    .observe = [&](const Moment& m) { step = m.step; },
-                    .stop = [&] { return step == 4; }})
-                .end,
-            RunEnd::stopped);
+  ASSERT_EQ(end_of_four_steps(c, files(false)), RunEnd::stopped);
   const auto refusal = [&] {
     try {
       run(c, {.files = files(true)});

@@ -48,6 +48,8 @@ TEST(ParticleClass, OfSievesHasTheirSharesOfTheMass) {
     if (size < 10e-3) below += mass;
   }
   EXPECT_NEAR(below / all, 0.4, 2e-3);
+  k.sieves = EJECTA_SOURCE_DIR "/tests/good_cases/sieves.csv";  // as in a resolved case
+  EXPECT_EQ(ParticleClass(k, "/another/folder", 1).mean_mass(), made.mean_mass());
 }
 
 TEST(ParticleClass, OfRosinAndRammlerHasItsMassMedian) {
