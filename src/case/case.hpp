@@ -419,6 +419,7 @@ struct MapSpec {
   std::array<double, 2> along{0, 0};   ///< m, window: where the body is at launch.arrives_at, +x
   std::array<double, 2> across{0, 0};  ///< m, the same across the belt, +y
   std::optional<bool> symmetric;       ///< about y of the jet; unset: where the case is
+  std::array<double, 2> grid{0, 0};    ///< m, along and across: runs at every place of it; 0: chosen
   double coarse_refinement = 0.5;      ///< grid.refinement of the coarse runs over that of the fine; 1: none
   int max_runs = 35;                   ///< of both
   int max_fine_runs = 15;              ///< where there are coarse runs
@@ -431,6 +432,7 @@ struct MapSpec {
   std::int64_t seed = 1;                      ///< of the draws behind the errors
   std::string measured;                       ///< CSV of a measured outline
 
+  bool is_on_grid() const { return grid[0] > 0.0 && grid[1] > 0.0; }
   /// Runs differ in more than their place: a verdict is a matter of chance.
   bool is_of_class() const { return lying != MapLying::given || size_factor[0] != size_factor[1]; }
   /// The map is a chance of ejection.

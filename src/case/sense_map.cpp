@@ -1,11 +1,13 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 
 #include "base/units.hpp"
 #include "case/extent.hpp"
 #include "case/findings.hpp"
 #include "case/load.hpp"
+#include "case/map_grid.hpp"
 #include "case/outline_file.hpp"
 #include "case/symmetry.hpp"
 
@@ -84,12 +86,42 @@ void check_window(const Case& c, Findings& found) {
                 "places at launch.arrives_at from which it meets the jet", "along = [\"-30 mm\", \"20 mm\"]");
 }
 
+void check_grid(const Case& c, Findings& found) {
+  const MapSpec& m = c.map;
+  const auto [along, across] = m.grid;
+  if (along == 0.0 && across == 0.0) return;
+  const std::string example = "grid = [\"3 mm\", \"2.5 mm\"]";
+  if (!m.is_on_grid())
+    return found.error("map.grid", "a grid with one step", "its steps along and across", example);
+  if (m.is_of_chance())
+    return found.error("map.grid", "a grid has one run at each place, which tells no chance of ejection",
+                       "no `grid`, or a single body: no `lying`, `size_factor`, `arrival_error`",
+                       "grid = [\"0 mm\", \"0 mm\"]");
+  if (!(m.along[0] < m.along[1]) || !(m.across[0] < m.across[1])) return;  // told already
+  const bool half = map_is_symmetric(c);
+  const double highest = half ? std::max(m.across[1], -m.across[0]) : m.across[1];
+  const MapGrid grid = map_grid(m.along, {half ? 0.0 : m.across[0], highest}, m.grid);
+  if (!grid.is_plane(half))
+    return found.error("map.grid",
+                       fmt::format("steps of {} and {} leave fewer than three rows or columns in the window",
+                                   mm(along), mm(across)),
+                       "shorter steps, or a larger window",
+                       fmt::format("grid = [\"{:.3g} mm\", \"{:.3g} mm\"]", 100.0 * (m.along[1] - m.along[0]),
+                                   100.0 * (highest - (half ? 0.0 : m.across[0]))));
+  if (grid.places() > m.max_runs)
+    found.error(
+        "map.grid",
+        fmt::format("its {:.0f} places in the window are more than max_runs = {}", grid.places(), m.max_runs),
+        "longer steps, a smaller window, or more runs", fmt::format("max_runs = {:.0f}", grid.places()));
+}
+
 }  // namespace
 
 void sense_map(const Case& c, Findings& found) {
   if (!c.map.enabled) return;
   if (!has_plate_and_launch(c, found) || !has_body(c, found)) return;
   check_window(c, found);
+  check_grid(c, found);
   if (!c.map.measured.empty() && require_file(c, "map.measured", c.map.measured, "missing: the file",
                                               "measured = \"outline.csv\"", found))
     read_outline_file(beside_case(c, c.map.measured), found.list);

@@ -49,6 +49,14 @@ Symmetry symmetry_across(const Case& c, std::size_t body) {
   return {.sure = plain, .refused = {}};
 }
 
+bool map_is_symmetric(const Case& c) {
+  if (c.map.symmetric) return *c.map.symmetric;
+  if (c.map.lying == MapLying::given) return symmetry_across(c, mapped_body(c)).sure;
+  Case plain = c;  // bodies that lie turned either way by chance are as even as the shape
+  plain.bodies.at(mapped_body(c)).rotation_angle = 0.0;
+  return symmetry_across(plain, mapped_body(c)).sure;
+}
+
 std::size_t mapped_body(const Case& c) {
   const auto at = std::find_if(c.bodies.begin(), c.bodies.end(), [&](const BodySpec& b) {
     return c.map.body.empty() ? b.on_belt : b.name == c.map.body;

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <set>
 #include <utility>
@@ -16,8 +17,8 @@
 #include "case/symmetry.hpp"
 #include "output/output_file.hpp"
 #include "study/map_case.hpp"
+#include "study/map_method.hpp"
 #include "study/map_result.hpp"
-#include "study/outline.hpp"
 
 namespace ejecta {
 namespace {
@@ -30,7 +31,9 @@ MapSettings settings_of(const Case& c) {
   s.window = {m.along[0], m.along[1], m.across[0], m.across[1]};
   s.symmetric = map_is_symmetric(c);
   if (s.symmetric) s.window.y_high = std::max(m.across[1], -m.across[0]);
-  s.coarse_cost = coarse_cost(c);
+  s.step_x = m.grid[0];
+  s.step_y = m.grid[1];
+  s.coarse_cost = m.is_on_grid() ? 0.0 : coarse_cost(c);
   s.first_runs = std::min(s.first_runs, m.max_runs);
   s.max_runs = m.max_runs;
   s.max_fine = std::min(m.max_fine_runs, m.max_runs);
@@ -43,14 +46,18 @@ MapSettings settings_of(const Case& c) {
 class MapMaker {
  public:
   MapMaker(const Case& base, TaskStore& store, const MapWorkers& workers)
-      : base_(base), store_(store), workers_(workers), settings_(settings_of(base)), finder_(settings_) {}
+      : base_(base),
+        store_(store),
+        workers_(workers),
+        settings_(settings_of(base)),
+        method_(make_map_method(settings_)) {}
 
   MapEnd make() {
     refuse_what_cannot_run();
     start_ = wall_seconds();
     spent_before_ = time_spent();
     for (;;) {
-      const std::vector<Proposal> asked = finder_.ask(base_.map.runs_at_once);
+      const std::vector<Proposal> asked = method_->ask(base_.map.runs_at_once);
       if (asked.empty()) return conclude(MapEnd::runs_used_up);
       std::vector<NewTask> tasks;
       for (const Proposal& p : asked) tasks.push_back({map_run_case(base_, p), labels_of(p)});
@@ -61,8 +68,8 @@ class MapMaker {
       if (std::none_of(runs_.begin(), runs_.end(), [](const MapPoint& r) { return r.flight.has_value(); }))
         throw Error(fmt::format("none of the first {} runs of the map came to an end: {}", runs_.size(),
                                 runs_.front().reason));
-      const Outline outline = finder_.outline();
-      if (finder_.is_finished(outline)) return conclude(MapEnd::finished);
+      const Outline outline = method_->outline();
+      if (method_->is_finished(outline)) return conclude(MapEnd::finished);
       show(outline, {}, "running");
     }
   }
@@ -129,7 +136,7 @@ class MapMaker {
       const Json done = store_.result(task);
       run.flight = map_flight(base_, done.at("result"));
       run.wall_time = done.value("wall_time_s", 0.0);
-      finder_.tell({p.at, run.flight->clearance(), p.fidelity});
+      method_->tell({p.at, run.flight->clearance(), p.fidelity});
     } else if (run.state != TaskState::waiting && run.state != TaskState::running) {
       run.reason = store_.failure(task);
       if (workers_.note)
@@ -158,10 +165,10 @@ class MapMaker {
 
   /// The same runs against a plate that stands elsewhere.
   Outline outline_for(const PlatePlace& plate) const {
-    OutlineFinder other(settings_);
+    const std::unique_ptr<MapMethod> other = make_map_method(settings_);
     for (const MapPoint& run : runs_)
-      if (run.flight) other.tell({run.at, run.flight->clearance(plate), run.fidelity});
-    return other.outline();
+      if (run.flight) other->tell({run.at, run.flight->clearance(plate), run.fidelity});
+    return other->outline();
   }
 
   MapEnd conclude(MapEnd end) {
@@ -172,9 +179,9 @@ class MapMaker {
       if (plate.x != 0.0 || plate.z != 0.0) plates.push_back({plate, outline_for(plate)});
     if (settings_.symmetric && !settings_.of_class && !symmetry_across(base_, mapped_body(base_)).sure)
       mirror_ = check_mirror();
-    if (base_.map.is_of_chance()) chance_ = finder_.chance_map(base_.map.arrival_error);
-    show(finder_.outline(), plates, end == MapEnd::finished ? "finished" : "runs used up");
-    const bool sound = finder_.contradictions().empty() && !(mirror_ && mirror_->contradicts());
+    if (base_.map.is_of_chance()) chance_ = method_->chance_map(base_.map.arrival_error);
+    show(method_->outline(), plates, end == MapEnd::finished ? "finished" : "runs used up");
+    const bool sound = method_->contradictions().empty() && !(mirror_ && mirror_->contradicts());
     return sound ? end : MapEnd::contradicted;
   }
 
@@ -187,7 +194,7 @@ class MapMaker {
                                     .plates = plates,
                                     .runs = runs_,
                                     .history = history_,
-                                    .contradictions = finder_.contradictions(),
+                                    .contradictions = method_->contradictions(),
                                     .mirror = mirror_,
                                     .chance = chance_,
                                     .wall_time = spent_before_ + wall_seconds() - start_});
@@ -199,7 +206,7 @@ class MapMaker {
   TaskStore& store_;
   const MapWorkers& workers_;
   MapSettings settings_;
-  OutlineFinder finder_;
+  std::unique_ptr<MapMethod> method_;
   std::vector<MapPoint> runs_;
   std::vector<MapHistory> history_;
   std::optional<MirrorCheck> mirror_;

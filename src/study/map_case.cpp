@@ -86,14 +86,6 @@ MapFlight map_flight(const Case& base, const nlohmann::ordered_json& result) {
           .gravity_z = base.environment.gravity.z()};
 }
 
-bool map_is_symmetric(const Case& base) {
-  if (base.map.symmetric) return *base.map.symmetric;
-  if (base.map.lying == MapLying::given) return symmetry_across(base, mapped_body(base)).sure;
-  Case plain = base;  // bodies that lie turned either way by chance are as even as the shape
-  plain.bodies.at(mapped_body(base)).rotation_angle = 0.0;
-  return symmetry_across(plain, mapped_body(base)).sure;
-}
-
 double coarse_cost(const Case& base) {
   const double r = base.map.coarse_refinement;
   return r >= 1.0 || base.flow.solver == FlowSolver::none ? 0.0 : std::pow(r, 4);

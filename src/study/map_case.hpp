@@ -32,9 +32,6 @@ struct MapFlight {
 };
 MapFlight map_flight(const Case& base, const nlohmann::ordered_json& result);
 
-/// Used where the case has it, unless the case says otherwise.
-bool map_is_symmetric(const Case& base);
-
 /// The cost of a coarse run over that of a fine one: cells times steps; 0 where there are only fine runs.
 double coarse_cost(const Case& base);
 

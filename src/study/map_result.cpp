@@ -123,6 +123,7 @@ Json map_result(const MapSummary& m) {
   r["length_behind_error_m"] = o.length_behind.error;
   r["area_of_plate_as_given_m2"] = o.area.value;
   r["widest_gap_m"] = o.widest_gap;
+  r["reaches_sides"] = o.reaches_sides;
   r["outline_m"] = polygon_json(main_outline(o.outline));
   r["outlines_m"] = polygons_json(o.outline);
   r["sure_m"] = polygons_json(o.sure);
@@ -205,6 +206,7 @@ std::string map_sentence(const Json& r) {
         1e3 * r["length_before_m"].get<double>(), 1e3 * r["length_behind_m"].get<double>());
   text += coarse > 0 ? fmt::format(" ({} fine and {} coarse runs)", fine, coarse)
                      : fmt::format(" ({} runs)", fine);
+  if (r["reaches_sides"].get<bool>()) text += "; it goes on beyond the window";
   if (const std::size_t n = r["contradictions"].size(); n > 0)
     text += fmt::format("; {} run{} contradict{} it", n, n == 1 ? "" : "s", n == 1 ? "s" : "");
   if (r.contains("mirror_check") && r["mirror_check"]["contradicts"])

@@ -8,6 +8,7 @@
 #include <limits>
 #include <numbers>
 #include <tuple>
+#include <utility>
 
 #include "base/error.hpp"
 #include "base/parallel.hpp"
@@ -353,23 +354,9 @@ Estimate estimate(std::span<const Measures> all, double Measures::*what, double 
   return e;
 }
 
-/// The half below the axis added.
-RasterValues whole_plane(const Raster& r, std::span<const double> values, bool symmetric) {
-  RasterValues whole{r, {values.begin(), values.end()}};
-  if (!symmetric) return whole;
-  whole.raster.cells_y = 2 * r.cells_y;
-  whole.raster.y0 = -r.dy * r.cells_y;
-  whole.values.clear();
-  for (int j = -r.cells_y; j <= r.cells_y; ++j)
-    for (int i = 0; i <= r.cells_x; ++i)
-      whole.values.push_back(values[static_cast<std::size_t>(r.node(i, std::abs(j)))]);
-  return whole;
-}
-
-std::vector<Polygon> whole_outlines(const Raster& r, const Eigen::VectorXd& values, bool symmetric) {
-  const RasterValues all =
-      whole_plane(r, {values.data(), static_cast<std::size_t>(values.size())}, symmetric);
-  return positive_outlines(all.raster, all.values);
+RasterValues whole_plane(const Raster& r, const Eigen::VectorXd& values, bool symmetric) {
+  const RasterValues half{r, {values.data(), values.data() + values.size()}};
+  return symmetric ? with_mirror_image(half) : half;
 }
 
 /// The middles of seven equal parts of the normal distribution, scaled to its variance.
@@ -529,9 +516,15 @@ Outline OutlineFinder::outline() const {
   out.length_behind = estimate(all, &Measures::behind, 1.0);
 
   const Eigen::VectorXd deviation = (square - mean.cwiseAbs2()).cwiseMax(0.0).cwiseSqrt();
-  out.outline = whole_outlines(raster, mean, settings_.symmetric);
-  out.sure = whole_outlines(raster, mean - kQuantile * deviation, settings_.symmetric);
-  out.possible = whole_outlines(raster, mean + kQuantile * deviation, settings_.symmetric);
+  const auto outlines = [&](const Eigen::VectorXd& values) {
+    const RasterValues all = whole_plane(raster, values, settings_.symmetric);
+    return positive_outlines(all.raster, all.values);
+  };
+  out.outline = outlines(mean);
+  out.sure = outlines(mean - kQuantile * deviation);
+  out.possible = outlines(mean + kQuantile * deviation);
+  const RasterValues expected = whole_plane(raster, mean, settings_.symmetric);
+  out.reaches_sides = reaches_sides(expected.raster, expected.values);
   for (const Point2& node : nodes_of(raster)) {
     double nearest = std::numeric_limits<double>::infinity();
     for (const MapRun& r : runs_)
@@ -556,7 +549,7 @@ std::vector<double> OutlineFinder::chances(std::span<const Point2> places) const
   return chances_of(places, runs_, settings_);
 }
 
-RasterValues OutlineFinder::chance_map(const std::array<double, 2>& arrival_error) const {
+std::optional<RasterValues> OutlineFinder::chance_map(const std::array<double, 2>& arrival_error) const {
   const Frame frame(settings_);
   const Raster raster = frame.raster(kCellsToAsk);
   const bool spread = arrival_error[0] > 0.0 || arrival_error[1] > 0.0;
@@ -572,7 +565,8 @@ RasterValues OutlineFinder::chance_map(const std::array<double, 2>& arrival_erro
   std::vector<double> chance(static_cast<std::size_t>(raster.nodes()), 0.0);
   for (std::size_t n = 0; n < each.size(); ++n)
     chance[n / together] += each[n] / static_cast<double>(together);
-  return whole_plane(raster, chance, settings_.symmetric);
+  RasterValues half{raster, std::move(chance)};
+  return settings_.symmetric ? with_mirror_image(half) : half;
 }
 
 /// A run that stands against all others also bends the process that judges it: the judgement is that of the

@@ -57,6 +57,17 @@ void trace(std::map<Edge, Step>& steps, const std::array<Corner, 3>& t) {
 
 }  // namespace
 
+RasterValues with_mirror_image(const RasterValues& upper) {
+  const Raster& r = upper.raster;
+  RasterValues whole{r, {}};
+  whole.raster.cells_y = 2 * r.cells_y;
+  whole.raster.y0 = -r.dy * r.cells_y;
+  for (int j = -r.cells_y; j <= r.cells_y; ++j)
+    for (int i = 0; i <= r.cells_x; ++i)
+      whole.values.push_back(upper.values[static_cast<std::size_t>(r.node(i, std::abs(j)))]);
+  return whole;
+}
+
 double positive_area(const Raster& r, std::span<const double> values) {
   double cells = 0.0;
   for (int j = 0; j < r.cells_y; ++j) {
@@ -93,6 +104,15 @@ Extent positive_extent(const Raster& r, std::span<const double> values) {
         take(x, y + r.dy * crossing(v, values[up]));
     }
   return e;
+}
+
+bool reaches_sides(const Raster& r, std::span<const double> values) {
+  for (int n = 0; n < r.nodes(); ++n) {
+    const int i = n % r.row(), j = n / r.row();
+    const bool side = i == 0 || i == r.cells_x || j == 0 || j == r.cells_y;
+    if (side && values[static_cast<std::size_t>(n)] > 0.0) return true;
+  }
+  return false;
 }
 
 std::vector<Polygon> positive_outlines(const Raster& r, std::span<const double> values) {

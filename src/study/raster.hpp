@@ -30,6 +30,9 @@ struct RasterValues {
   std::vector<double> values;  ///< at the nodes
 };
 
+/// Of the half above y = 0, whose lowest nodes lie there: with what is the same below.
+RasterValues with_mirror_image(const RasterValues& upper);
+
 /// Area where `values` at the nodes are positive, m2.
 double positive_area(const Raster& raster, std::span<const double> values);
 
@@ -38,6 +41,9 @@ struct Extent {
   double low_x, high_x, low_y, high_y;  ///< m
 };
 Extent positive_extent(const Raster& raster, std::span<const double> values);
+
+/// Something is positive on the sides of the raster: what is positive goes on beyond them.
+bool reaches_sides(const Raster& raster, std::span<const double> values);
 
 /// Outlines of what is positive, closed along the raster's sides.
 std::vector<Polygon> positive_outlines(const Raster& raster, std::span<const double> values);

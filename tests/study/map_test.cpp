@@ -10,6 +10,7 @@
 #include "base/error.hpp"
 #include "case/extent.hpp"
 #include "case/node_path.hpp"
+#include "case/symmetry.hpp"
 #include "output/output_file.hpp"
 #include "scratch_directory.hpp"
 #include "study/map_case.hpp"
@@ -145,6 +146,22 @@ TEST_F(Maps, FindsAnEllipseWithItsErrors) {
                  half = kHalfY * std::sqrt(std::max(0.0, 1 - std::pow((x + 3e-3) / kHalfX, 2)));
     EXPECT_NEAR(row["y_high_m"], half, 0.9e-3);
   }
+}
+
+TEST_F(Maps, OnAGridEveryPlaceOfItIsRun) {
+  map(read(kCase, {"map.grid=[\"5 mm\", \"3 mm\"]", "map.max_runs=100", "map.coarse_refinement=0.5"}),
+      "grid");
+  const Json r = result("grid");
+  EXPECT_EQ(r["state"], "finished");
+  EXPECT_EQ(r["runs_coarse"], 0);
+  for (const Json& run : r["runs"]) {
+    EXPECT_NEAR(std::remainder(run["x_m"].get<double>(), 5e-3), 0.0, 1e-12);
+    EXPECT_NEAR(std::remainder(run["y_m"].get<double>(), 3e-3), 0.0, 1e-12);
+  }
+  const double truth = std::numbers::pi * kHalfX * kHalfY;
+  EXPECT_NEAR(r["area_of_plate_as_given_m2"], truth, r["area_error_m2"].get<double>());
+  EXPECT_LT(r["area_error_m2"], 0.1 * truth);
+  EXPECT_EQ(r["plates"].size(), 2u);
 }
 
 /// Cubes of 80 to 120 % that lie turned: the larger ones are not thrown as high.

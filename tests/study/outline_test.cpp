@@ -238,7 +238,7 @@ TEST(Outline, OfAClassTheAreaIsTheIntegralOfTheChance) {
 
 TEST(Outline, AnErrorOfArrivalSmoothesTheChanceAndKeepsItsIntegral) {
   const OutlineFinder finder = mapped(half_plane(), egg);
-  const RasterValues sharp = finder.chance_map({0.0, 0.0}), smooth = finder.chance_map({4e-3, 2e-3});
+  const RasterValues sharp = *finder.chance_map({0.0, 0.0}), smooth = *finder.chance_map({4e-3, 2e-3});
   ASSERT_EQ(sharp.values.size(), smooth.values.size());
   const auto sum = [](const RasterValues& v) {
     return std::accumulate(v.values.begin(), v.values.end(), 0.0);
