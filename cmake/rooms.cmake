@@ -30,7 +30,7 @@ endif()
 # namespaces too. Loops over cells, faces and bodies get -O3, all else -O1.
 option(EJECTA_UNITY "Compile several files as one" ON)
 function(ejecta_compile_as_one target)
-  set_target_properties(${target} PROPERTIES UNITY_BUILD ${EJECTA_UNITY} UNITY_BUILD_BATCH_SIZE 12)
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ${EJECTA_UNITY} UNITY_BUILD_BATCH_SIZE 24)
 endfunction()
 
 # ejecta_room(flow [KERNELS] USES base case grid [LIBS hdf5...])

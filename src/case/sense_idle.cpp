@@ -189,6 +189,28 @@ void look_at_plate(const SplitterSpec& s, Idle idle) {
                 "edge = [\"250 mm\", \"60 mm\"]");
 }
 
+/// Nothing sets the fluid in motion, and no body moves in it.
+bool is_still(const Case& c) {
+  const auto given = [](const StateSpec& s) {
+    return s.velocity || s.pressure || s.density || s.temperature;
+  };
+  const auto drives = [&](const BoundarySpec& face) {
+    return given(face.state) || !face.patches.empty() || face.type == BoundaryType::total_pressure ||
+           face.type == BoundaryType::jet || face.type == BoundaryType::moving_wall;
+  };
+  return std::none_of(c.boundary.begin(), c.boundary.end(), drives) && c.initial.empty() &&
+         c.flow.body_force.isZero() && c.grains.empty() &&
+         std::all_of(c.bodies.begin(), c.bodies.end(),
+                     [](const BodySpec& b) { return b.motion == Motion::fixed; });
+}
+
+/// The face through which a stream of this velocity comes in.
+const char* face_upstream(const Vec3& velocity) {
+  int axis = 0;
+  velocity.cwiseAbs().maxCoeff(&axis);
+  return face_names[static_cast<std::size_t>(2 * axis + (velocity[axis] < 0.0))];
+}
+
 }  // namespace
 
 void sense_idle(const Case& c, Findings& found) {
@@ -215,6 +237,16 @@ void sense_idle(const Case& c, Findings& found) {
   if (c.flow.solver == FlowSolver::none && c.stream.enabled)
     found.error("stream", "[stream] does nothing here: nothing flows, solver is \"none\"",
                 "a flow solver, or no [stream]", "[flow] solver = \"incompressible\"");
+  if (c.flow.solver != FlowSolver::none && !c.stream.velocity.isZero() && is_still(c))
+    found.error(
+        "stream.velocity",
+        "[stream] only says what drag coefficients refer to, and nothing in this case moves: no velocity "
+        "on a boundary or at first, no pressure, no force, no body",
+        "the stream on the face where it comes in, or at first",
+        fmt::format("[boundary.{}] type = \"velocity\", velocity = [\"{:g} m/s\", \"{:g} m/s\", \"{:g} "
+                    "m/s\"]",
+                    face_upstream(c.stream.velocity), c.stream.velocity.x(), c.stream.velocity.y(),
+                    c.stream.velocity.z()));
   if (c.grains.empty())
     table("coupling")
         .refuse({"drag", "exchange", "kernel_width"}, "there are no [[grains]]",

@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <map>
+#include <utility>
 
 #include "base/text.hpp"
 #include "case/documented.hpp"
@@ -61,6 +63,46 @@ std::string same_name_elsewhere(const std::string& name) {
   return "";
 }
 
+/// What others call the keys.
+constexpr std::array<std::pair<const char*, const char*>, 30> kOtherWords{{
+    {"radius", "diameter"},
+    {"edge", "size"},
+    {"edges", "size"},
+    {"length", "size"},
+    {"dimensions", "size"},
+    {"extents", "size"},
+    {"centre", "position"},
+    {"center", "position"},
+    {"location", "position"},
+    {"origin", "position"},
+    {"centre", "point"},
+    {"center", "point"},
+    {"position", "point"},
+    {"angular_velocity", "spin"},
+    {"omega", "spin"},
+    {"dt", "time_step"},
+    {"cfl", "courant"},
+    {"tend", "end_time"},
+    {"duration", "end_time"},
+    {"rho", "density"},
+    {"mu", "viscosity"},
+    {"dynamic_viscosity", "viscosity"},
+    {"modulus", "youngs_modulus"},
+    {"e_modulus", "youngs_modulus"},
+    {"nu", "poisson_ratio"},
+    {"cor", "restitution"},
+    {"pressure", "supply_pressure"},
+    {"stl", "file"},
+    {"mesh", "file"},
+    {"model", "turbulence"},
+}};
+
+std::string other_word(const std::string& name, const std::vector<std::string>& names) {
+  for (const auto& [word, key] : kOtherWords)
+    if (name == word && std::find(names.begin(), names.end(), key) != names.end()) return key;
+  return "";
+}
+
 void refuse_in(const Node& table, const std::string& section, const std::string& path,
                std::vector<Problem>& problems) {
   const std::vector<std::string>& names = known_names().at(section);
@@ -69,7 +111,8 @@ void refuse_in(const Node& table, const std::string& section, const std::string&
     const std::string child_section = section.empty() ? child.key : section + "." + child.key;
     const std::string child_path = path.empty() ? child.key : path + "." + child.key;
     if (std::find(names.begin(), names.end(), child.key) == names.end()) {
-      const std::string close = nearest(child.key, names);
+      std::string close = other_word(child.key, names);
+      if (close.empty()) close = nearest(child.key, names);
       problems.push_back({.key = child_path,
                           .what = "unknown key",
                           .expected = "one of " + joined(names),

@@ -77,7 +77,7 @@ Json check_json(const Case& c, const Scene& scene, const std::vector<Problem>& w
     j["turbulence"] = word(c.flow.turbulence);
     j["cells"] = f.cells;
     j["smallest_cell_m"] = f.smallest_cell;
-    if (f.fastest > 0.0 || c.run.time_step) {
+    if (f.knows_step) {
       j["flow_steps"] = f.steps;
       j["time_step_s"] = f.time_step;
       j["flow_until_s"] = f.air_until;

@@ -55,11 +55,12 @@ std::string flow_part(const Case& c, const Company& company, std::span<const Bod
   text += fmt::format("  cells        {} ({} to {} across, {:.3g} to {:.3g} mm3)\n", f.cells,
                       length_words(f.smallest_cell), length_words(f.largest_cell), 1e9 * f.smallest_volume,
                       1e9 * f.largest_volume);
-  if (f.fastest > 0.0 || c.run.time_step) {
-    text += fmt::format(
-        "  steps        about {:.0f} with the fluid, {} and longer ({:.3g} m/s at Courant {}), up to {}\n",
-        two_digits(static_cast<double>(f.steps)), time_words(f.time_step), f.fastest, c.run.courant,
-        time_words(f.air_until));
+  if (f.knows_step) {
+    text += fmt::format("  steps        about {:.0f} with the fluid, {} and longer ({}), up to {}\n",
+                        two_digits(static_cast<double>(f.steps)), time_words(f.time_step),
+                        f.by_viscosity ? "explicit viscous terms"
+                                       : fmt::format("{:.3g} m/s at Courant {}", f.fastest, c.run.courant),
+                        time_words(f.air_until));
     text += fmt::format("  time         {} on this machine, longer if the fluid gets faster{}\n",
                         duration_words(expected_seconds(c, f, bandwidth, grains)),
                         grains.empty() ? "" : "; contacts of grains are not counted");

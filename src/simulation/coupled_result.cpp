@@ -54,7 +54,9 @@ Json body_json(const CoupledModel& m, std::size_t b) {
                             ? c.stream.reference_area
                             : body.shape.projected_area(body.orientation.conjugate() * direction);
     const double q = 0.5 * m.flow()->density() * c.stream.velocity.squaredNorm() * area;
-    const Vec3 force = m.mean_force(b);
+    // Of the stream: the weight of the displaced fluid, which bears the body in a fluid at rest too, is none.
+    const double displaced = m.flow()->density() * body.shape.mass_properties().volume;
+    const Vec3 force = m.mean_force(b) + displaced * c.environment.gravity;
     const double drag = force.dot(direction);
     j["drag_coefficient"] = drag / q;
     // Against a drag of nothing there is no ratio; the file then has no such number.

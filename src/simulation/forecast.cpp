@@ -144,6 +144,16 @@ double disk_space(const Case& c, const Grid& grid, const Forecast& f) {
   return bytes + (checkpoints ? 2.0 * cells * kStateFields * sizeof(Real) : 0.0);  // the last two are kept
 }
 
+/// Inverse of the longest step of the explicit viscous terms, 2 nu sum 1/h2, 1/s; with a turbulence model,
+/// whose eddies are more viscous and whose increments are smoothed, none.
+double viscous_rate(const Case& c, const Grid& grid) {
+  if (c.flow.turbulence != TurbulenceModel::laminar) return 0.0;
+  double sum = 0.0;
+  for (int d = 0; d < 3; ++d)
+    if (grid.active(d)) sum += std::pow(grid.axis(d).smallest(), -2);
+  return 2.0 * c.fluid.viscosity / c.fluid.density * sum;
+}
+
 }  // namespace
 
 Forecast forecast(const Case& c) { return forecast(c, company_of(with_first_copies(c))); }
@@ -164,8 +174,11 @@ Forecast forecast(const Case& c, const Company& company) {
     f.largest_cell = std::max(f.largest_cell, grid.axis(d).largest());
   }
   f.fastest = fastest_speed(c, grid);
-  if (!c.run.time_step && f.fastest > 0.0)
-    f.time_step = std::min(c.run.time_step_max, c.run.courant * f.smallest_cell / f.fastest);
+  const double convection = f.fastest / (c.run.courant * f.smallest_cell), viscosity = viscous_rate(c, grid);
+  if (!c.run.time_step && convection + viscosity > 0.0)
+    f.time_step = std::min(c.run.time_step_max, 1.0 / (convection + viscosity));
+  f.by_viscosity = viscosity > convection && f.time_step < c.run.time_step_max;
+  f.knows_step = c.run.time_step || f.fastest > 0.0 || f.by_viscosity;
   f.steps = c.run.time_step || !has_jet(c) || is_compressible(c)
                 ? static_cast<std::int64_t>(std::max(1.0, std::ceil(f.air_until / f.time_step)))
                 : jet_steps(c, grid, f.air_until);

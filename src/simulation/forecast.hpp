@@ -18,6 +18,8 @@ struct Forecast {
   double fastest = 0.0;                                ///< m/s, the speed that limits the step
   double air_until = 0.0;                              ///< s: bodies fly on without flow
   double time_step = 0.0;                              ///< s, the shortest
+  bool by_viscosity = false;  ///< it is the viscosity of a laminar flow that limits the step
+  bool knows_step = false;    ///< false: nothing given tells how fast the fluid will be
   std::int64_t steps = 0;
   double memory = 0.0;  ///< bytes
   double disk = 0.0;    ///< bytes

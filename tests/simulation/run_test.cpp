@@ -3,16 +3,20 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <numbers>
 #include <thread>
 
 #include "app/ejection.hpp"
 #include "base/error.hpp"
 #include "base/file_lock.hpp"
+#include "case/load.hpp"
 #include "output/output_file.hpp"
 #include "scratch_directory.hpp"
+#include "simulation/forecast.hpp"
 
 /// run(case) -> result, as studies, sorters and scripts call it.
 namespace ejecta {
@@ -268,6 +272,55 @@ TEST(Run, KeepsTheFieldsOfItsLastMomentWhereTheyAreWanted) {
       (r.fields->faces[0].size() - 1) * (r.fields->faces[1].size() - 1) * (r.fields->faces[2].size() - 1);
   EXPECT_EQ(cells, std::size_t(r.quantities["cells"]));
   for (const ResultField& f : r.fields->fields) EXPECT_EQ(f.values.size(), cells * std::size_t(f.components));
+}
+
+/// A sphere held in a stream of water that rises, slowly enough for its buoyancy to be as large as its drag.
+Case sphere_in_water(double gravity) {
+  return parse_case(fmt::format(R"([run]
+end_time = "60 ms"
+[flow]
+solver = "incompressible"
+[fluid]
+ideal_gas = false
+density = "1000 kg/m3"
+viscosity = "0.1 Pa s"
+[environment]
+gravity = ["0 m/s2", "0 m/s2", "{} m/s2"]
+[grid]
+x = {{ points = ["-40 mm", "40 mm"], cells = [16] }}
+y = {{ points = ["-40 mm", "40 mm"], cells = [16] }}
+z = {{ points = ["-40 mm", "40 mm"], cells = [16] }}
+[boundary]
+z_min = {{ type = "velocity", velocity = ["0 m/s", "0 m/s", "1 m/s"] }}
+z_max = {{ type = "free-stream" }}
+[stream]
+velocity = ["0 m/s", "0 m/s", "1 m/s"]
+[[body]]
+shape = "sphere"
+diameter = "24 mm"
+motion = "fixed"
+)",
+                                gravity),
+                    "water.toml");
+}
+
+/// Unlike the force, which a balance would show.
+TEST(Run, DragIsWithoutBuoyancy) {
+  const auto body = [](double gravity) { return run(sphere_in_water(gravity)).quantities["bodies"][0]; };
+  const auto still = body(0.0), heavy = body(-9.81);
+  const double drag = still["drag_coefficient"];
+  EXPECT_GT(drag, 0.0);
+  EXPECT_NEAR(heavy["drag_coefficient"], drag, 1e-6 * drag);
+  EXPECT_NEAR(heavy["mean_force_N"][2].get<double>() - still["mean_force_N"][2].get<double>(),
+              1000.0 * 9.81 * std::numbers::pi / 6.0 * std::pow(24e-3, 3), 1e-6);
+}
+
+/// check tells the steps that viscosity asks for.
+TEST(Run, StepsOfAViscousFlowAreForetold) {
+  Case c = sphere_in_water(0.0);
+  c.fluid.viscosity = 50.0;
+  const double steps = run(c).quantities["steps"];
+  EXPECT_NEAR(double(forecast(c).steps), steps, 0.1 * steps);
 }
 
 TEST(Run, LeavesARunInPeaceThatGoesOnElsewhere) {
