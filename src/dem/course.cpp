@@ -27,8 +27,6 @@ constexpr double kGauss[4] = {0.129484966168869693270611432679082, 0.27970539148
 constexpr double kExact = 1e-12;  // of the way there and back: finer than that is the noise of the formula
 constexpr int kMostParts = 100;   // enough to close in on a jump
 
-constexpr double kLargestTurn = 0.05;  // rad
-
 struct Integral {
   double value, error, size;  // size: of the absolute value
 };

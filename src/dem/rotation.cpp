@@ -6,8 +6,6 @@
 namespace ejecta {
 namespace {
 
-constexpr double kLargestTurn = 0.05;  // rad
-
 /// An exact turn about one body axis: `l` is the angular momentum in body axes.
 void turn_axis(Quat& q, Vec3& l, const Vec3& inertia, int axis, double dt) {
   const double half = 0.5 * dt * l[axis] / inertia[axis];

@@ -3,10 +3,13 @@
 
 namespace ejecta {
 
+/// Of one piece of a turn that is integrated, rad.
+inline constexpr double kLargestTurn = 0.05;
+
 /// Turns `orientation` over dt under no torque, with the angular momentum `momentum` (world axes, kg m2/s)
 /// held exactly. Splits the kinetic energy L1^2/2I1 + L2^2/2I2 + L3^2/2I3 into exact turns about single axes
 /// (Dullweber, Leimkuhler & McLachlan 1997, J. Chem. Phys. 107:5840), composed to fourth order (Yoshida
-/// 1990), in as many pieces as keep each turn below 0.05 rad: the energy error stays bounded.
+/// 1990), in as many pieces as keep each turn below kLargestTurn: the energy error stays bounded.
 void rotate_free(Quat& orientation, const Vec3& momentum, const Vec3& inertia, double dt);
 
 /// All principal moments equal: spin and angular momentum are parallel.
