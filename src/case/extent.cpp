@@ -118,4 +118,16 @@ double valve_pitch(const Case& c) {
   return c.manifold.pitch > 0.0 ? c.manifold.pitch : c.sorter.belt_width / c.manifold.valves;
 }
 
+FineBlock fine_block(const AxisSpec& axis) {
+  FineBlock finest;
+  for (std::size_t b = 0; b < axis.cells.size(); ++b) {
+    const double length = axis.points[b + 1] - axis.points[b],
+                 grading = axis.grading.empty() ? 1.0 : axis.grading[b];
+    const double cell = std::max(cell_width(length, axis.cells[b], grading, 0),
+                                 cell_width(length, axis.cells[b], grading, axis.cells[b] - 1));
+    if (cell < finest.cell) finest = {b, axis.points[b], axis.points[b + 1], cell};
+  }
+  return finest;
+}
+
 }  // namespace ejecta

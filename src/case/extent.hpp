@@ -42,4 +42,11 @@ Vec3 half_extent(const BodySpec&);
 /// Where the body is when it matters: at the start, or on the jet's axis if it comes from the belt, m.
 Vec3 place_of_interest(const Case&, const BodySpec&);
 
+/// The block of an axis with the smallest cells.
+struct FineBlock {
+  std::size_t block = 0;
+  double low = 0.0, high = 0.0, cell = 1e300;  ///< m, its ends and the width of its cells
+};
+FineBlock fine_block(const AxisSpec& axis);
+
 }  // namespace ejecta

@@ -1,4 +1,6 @@
 #pragma once
+#include <algorithm>
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -11,6 +13,10 @@ namespace ejecta {
 struct Findings {
   std::vector<Problem> list;
 
+  std::ptrdiff_t errors() const {
+    return std::count_if(list.begin(), list.end(),
+                         [](const Problem& p) { return p.severity == Severity::error; });
+  }
   void error(const std::string& key, const std::string& what, const std::string& expected = "",
              const std::string& example = "") {
     list.push_back({.key = key, .what = what, .expected = expected, .example = example});

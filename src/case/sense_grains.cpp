@@ -34,9 +34,9 @@ double largest_size(const GrainsSpec& g, const SizeDistribution& sizes) {
 /// Nothing where they are not sound, which is told.
 std::optional<SizeDistribution> sizes_of(const Case& c, const GrainsSpec& g, const std::string& at,
                                          Findings& found) {
-  const std::size_t before = found.list.size();
+  const std::ptrdiff_t before = found.errors();
   check_size_law(c, g, at, "1 mm", found);
-  if (found.list.size() > before) return std::nullopt;
+  if (found.errors() > before) return std::nullopt;
   try {
     return size_distribution(g, folder_of(c));
   } catch (const InputError& e) {
@@ -176,7 +176,7 @@ void sense_grains(const Case& c, Findings& found) {
   for (std::size_t n = 0; n < c.grains.size(); ++n) {
     const GrainsSpec& g = c.grains[n];
     const std::string at = fmt::format("grains.{}.", n);
-    const std::size_t before = found.list.size();
+    const std::ptrdiff_t before = found.errors();
     if (!g.material.empty() && std::none_of(c.materials.begin(), c.materials.end(),
                                             [&](const auto& m) { return m.name == g.material; }))
       found.error(at + "material", fmt::format("there is no material \"{}\"", g.material),
@@ -186,7 +186,7 @@ void sense_grains(const Case& c, Findings& found) {
                   "held = false, or no velocity", "held = false");
     const std::optional<SizeDistribution> drawn = sizes_of(c, g, at, found);
     check_amount(g, at, found);
-    if (found.list.size() > before) continue;
+    if (found.errors() > before) continue;
     const SizeDistribution& sizes = *drawn;
     check_place(c, g, sizes, at, found);
     if (flows) check_cells(c, g, sizes, at, found);

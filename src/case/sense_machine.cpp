@@ -4,6 +4,7 @@
 #include <cmath>
 #include <filesystem>
 #include <set>
+#include <string>
 
 #include "base/units.hpp"
 #include "case/extent.hpp"
@@ -19,7 +20,7 @@ namespace ejecta {
 namespace {
 
 bool has_machine(const Case& c, Findings& found) {
-  const std::size_t before = found.list.size();
+  const std::ptrdiff_t before = found.errors();
   if (!c.launch.enabled)
     found.error("sorter", "a sorter needs the flight from the belt to the jets, but there is no [launch]",
                 "[launch]", "[launch] belt_speed = \"3 m/s\"");
@@ -36,10 +37,30 @@ bool has_machine(const Case& c, Findings& found) {
   if (!c.jet.more_nozzles.empty())
     found.error("jet.more_nozzles", "the valves of a sorter are those of its manifold", "[sorter.manifold]",
                 "[sorter.manifold] valves = 128");
-  if (!(c.sorter.throughput > 0.0))
+  if (!c.valve.more_pulses.empty())
+    found.error("valve.more_pulses", "the valves of a sorter open as its controller tells them",
+                "no more_pulses", "more_pulses = []");
+  for (const char* key : {"offset_along", "offset_across"})
+    if (c.given.contains(fmt::format("launch.{}", key)))
+      found.error(fmt::format("launch.{}", key),
+                  fmt::format("`{}` does nothing here: the feed says where particles are", key),
+                  fmt::format("no {}, or sorter.controller.lead", key),
+                  "[sorter.controller] lead = \"6 ms\"");
+  const Vec3& g = c.environment.gravity;
+  if (!(g.z() < 0.0) || g.x() != 0.0 || g.y() != 0.0)
+    found.error("environment.gravity", "particles leave a level belt and fall straight down",
+                "gravity along -z", "gravity = [\"0 m/s2\", \"0 m/s2\", \"-9.81 m/s2\"]");
+  const bool file = c.feed.presentation == Presentation::file;
+  if (!file && !(c.sorter.throughput > 0.0))
     found.error("sorter.throughput", "missing: how much the belt brings", "a mass flow, more than 0",
                 "throughput = \"10 t/h\"");
-  return found.list.size() == before;
+  for (const char* key : {"throughput", "particles"})
+    if (file && c.given.contains(fmt::format("sorter.{}", key)))
+      found.warning(fmt::format("sorter.{}", key),
+                    fmt::format("`{}` does nothing here: sorter.feed.file says what comes, and when", key),
+                    fmt::format("no {}, or another presentation", key),
+                    "[sorter.feed] presentation = \"monolayer\"");
+  return found.errors() == before;
 }
 
 void check_sizes(const Case& c, std::size_t n, Findings& found) {
@@ -68,7 +89,12 @@ void check_classes(const Case& c, Findings& found) {
   }
   double sum = 0.0;
   bool any = false;
+  std::set<std::string> names;
   for (std::size_t n = 0; n < c.classes.size(); ++n) {
+    if (!c.classes[n].name.empty() && !names.insert(c.classes[n].name).second)
+      found.error(fmt::format("sorter.class.{}.name", n),
+                  fmt::format("there is a class \"{}\" already", c.classes[n].name), "names that differ",
+                  fmt::format("name = \"{} {}\"", c.classes[n].name, n + 1));
     sum += c.classes[n].share;
     any = any || (c.classes[n].eject && c.classes[n].share > 0.0);
     check_sizes(c, n, found);
@@ -85,6 +111,66 @@ void check_classes(const Case& c, Findings& found) {
   if (!any)
     found.error("sorter.class.0.eject", "no class is to be ejected", "true for at least one of them",
                 "eject = true");
+}
+
+/// s, of a burst: longer ones are no shots at particles.
+constexpr double kLongestBurst = 1.0;
+
+/// Commands that the controller cannot mean, or that the jet of the case says nothing of.
+void check_commands(const Case& c, Findings& found) {
+  const ControllerSpec& k = c.controller;
+  const bool fixed = k.window == WindowRule::fixed;
+  const auto too_long = [&](const char* key, double lasts, const char* example) {
+    if (lasts > kLongestBurst)
+      found.error(fmt::format("sorter.controller.{}", key),
+                  fmt::format("{} is no burst at a particle", format_quantity(lasts, Dimension::time)),
+                  fmt::format("at most {:g} s", kLongestBurst), example);
+  };
+  too_long("duration", k.duration, "duration = \"8 ms\"");
+  too_long("lead", std::abs(k.lead), "lead = \"6 ms\"");
+  too_long("shortest_on", k.shortest_on, "shortest_on = \"2 ms\"");
+  too_long("shortest_off", k.shortest_off, "shortest_off = \"2 ms\"");
+  too_long("time_error", 2.0 * k.quantile * k.time_error, "time_error = \"1 ms\"");
+  if (fixed && c.given.contains("sorter.controller.time_error"))
+    found.warning("sorter.controller.time_error", "`time_error` does nothing here: window is \"fixed\"",
+                  "no time_error, or the other window", "window = \"by-size\"");
+  const double opens = c.valve.rise_time, needs = fixed ? std::max(k.duration, k.shortest_on) : 1e300;
+  if (c.valve.shape != ValveShape::trace && c.valve.duration < std::min(opens, needs))
+    found.error(
+        "valve.duration",
+        fmt::format("the jet of a command of {} never blows fully, its valve opens within {}: it does not "
+                    "say what the longer commands of the controller do",
+                    format_quantity(c.valve.duration, Dimension::time),
+                    format_quantity(opens, Dimension::time)),
+        "at least valve.rise_time, or as long as sorter.controller.duration",
+        fmt::format("duration = \"{:.3g} ms\"", 1e3 * std::max(opens, fixed ? needs : opens)));
+}
+
+/// Signals by which no reading can part the classes.
+void check_signals(const Case& c, Findings& found) {
+  double sum[2] = {0, 0}, share[2] = {0, 0}, low = 1e300, high = -1e300, spread = c.camera.noise;
+  for (const ParticleClassSpec& k : c.classes) {
+    if (k.read_as_eject) return;  // a matrix of readings stands for signals
+    sum[k.eject] += k.share * k.signal;
+    share[k.eject] += k.share;
+    low = std::min(low, k.signal);
+    high = std::max(high, k.signal);
+    spread = std::max(spread, k.signal_spread);
+  }
+  if (!(share[0] > 0.0) || !(share[1] > 0.0)) return;
+  const double keep = sum[0] / share[0], eject = sum[1] / share[1];
+  if (keep == eject)
+    return found.error("sorter.class.0.signal",
+                       fmt::format("what is ejected and what is kept read alike, {:g}: nothing can tell them "
+                                   "apart",
+                                   keep),
+                       "signals that differ, or read_as_eject for each class", "signal = 1.0");
+  const double threshold = c.camera.threshold.value_or(0.5 * (keep + eject));
+  if (spread == 0.0 && (threshold < low || threshold >= high))
+    found.error("sorter.camera.threshold",
+                fmt::format("all signals, {:g} to {:g}, lie on one side of {:g}: everything is read alike",
+                            low, high, threshold),
+                "a threshold between the signals", fmt::format("threshold = {:g}", 0.5 * (keep + eject)));
 }
 
 /// Share of the belt's width that the valves may leave without one, or stand beside it, before it is asked
@@ -119,7 +205,11 @@ void check_manifold(const Case& c, Findings& found) {
     found.error("sorter.manifold.pitch",
                 fmt::format("valves every {:.4g} mm have no room for orifices of {:.4g} mm", 1e3 * pitch,
                             1e3 * c.valve.orifice_diameter),
-                "more than valve.orifice_diameter, or fewer valves", fits);
+                "more than valve.orifice_diameter, or fewer valves",
+                belt > m.valves * c.valve.orifice_diameter
+                    ? fits
+                    : fmt::format("valves = {:.0f}",
+                                  std::max(1.0, std::floor(0.5 * belt / c.valve.orifice_diameter))));
   if (m.vessel > 0.0 && !(m.line_diameter > 0.0))
     found.error("sorter.manifold.line_diameter", "the vessel is fed through nothing", "a length, more than 0",
                 "line_diameter = \"10 mm\"");
@@ -129,10 +219,6 @@ void check_manifold(const Case& c, Findings& found) {
 /// them.
 void check_feeder(const Case& c, double longest, Findings& found) {
   const double g = std::abs(c.environment.gravity.z()), v = c.launch.belt_speed, u = c.feed.lip_speed;
-  if (!(c.environment.gravity.z() < 0.0) || c.environment.gravity.x() != 0.0 ||
-      c.environment.gravity.y() != 0.0)
-    return found.error("environment.gravity", "particles fall from a feeder straight down",
-                       "gravity along -z", "gravity = [\"0 m/s2\", \"0 m/s2\", \"-9.81 m/s2\"]");
   if (c.feed.lip_height < longest)
     found.error("sorter.feed.lip_height",
                 fmt::format("particles of up to {:.4g} mm do not pass under a lip at {:.4g} mm",
@@ -187,6 +273,8 @@ void check_devices(const Case& c, Findings& found) {
                 "about two pixels",
                 fmt::format("gap = \"{:.2g} mm\"", 2e3 * c.sorter.belt_width / c.camera.pixels));
   check_manifold(c, found);
+  check_commands(c, found);
+  check_signals(c, found);
   if (c.feed.presentation != Presentation::file && !c.feed.file.empty())
     found.error("sorter.feed.file", "`file` does nothing here: it belongs to presentation = \"file\"",
                 "presentation = \"file\", or no file", "presentation = \"file\"");
@@ -209,9 +297,9 @@ void check_devices(const Case& c, Findings& found) {
 void sense_machine(const Case& c, Findings& found) {
   if (!c.sorter.enabled) return;
   if (!has_machine(c, found)) return;
-  const std::size_t before = found.list.size();
+  const std::ptrdiff_t before = found.errors();
   check_classes(c, found);
-  if (found.list.size() == before) check_devices(c, found);
+  if (found.errors() == before) check_devices(c, found);
 }
 
 }  // namespace ejecta

@@ -119,6 +119,9 @@ void check_grid(const Case& c, Findings& found) {
 
 void sense_map(const Case& c, Findings& found) {
   if (!c.map.enabled) return;
+  if (c.flow.solver == FlowSolver::none)
+    return found.error("map", "a map of the places where the air throws a body, and no air",
+                       "a flow with a jet", "[flow] solver = \"incompressible\"");
   if (!has_plate_and_launch(c, found) || !has_body(c, found)) return;
   check_window(c, found);
   check_grid(c, found);

@@ -8,6 +8,7 @@
 #include "simulation/assumptions.hpp"
 #include "simulation/body_checks.hpp"
 #include "simulation/forecast.hpp"
+#include "simulation/sorter_run.hpp"
 
 namespace ejecta {
 namespace {
@@ -71,7 +72,14 @@ Json check_json(const Case& c, const Scene& scene, const std::vector<Problem>& w
   Json j{{"case", c.path}, {"title", c.run.title}, {"solver", word(c.flow.solver)}};
   const Company company = company_of(scene);
   std::optional<Grid> grid;
-  if (c.flow.solver != FlowSolver::none) {
+  if (c.sorter.enabled) {
+    const SorterForecast f = sorter_forecast(c);
+    j["sorter"] = {{"particles", f.particles},
+                   {"belt_m", f.belt},
+                   {"time_s", f.time},
+                   {"fed_kg", f.mass},
+                   {"cover", f.cover}};
+  } else if (c.flow.solver != FlowSolver::none) {
     grid.emplace(make_grid(c));
     const Forecast f = forecast(c, company);
     j["turbulence"] = word(c.flow.turbulence);

@@ -18,6 +18,7 @@
 #include "simulation/forecast.hpp"
 #include "simulation/prospect.hpp"
 #include "simulation/scene.hpp"
+#include "simulation/sorter_run.hpp"
 
 namespace ejecta {
 namespace {
@@ -199,6 +200,23 @@ std::string plate_part(const Case& c, const Splitter* plate) {
                      1e3 * c.splitter.height);
 }
 
+/// The belt of a sorter and what comes on it; its box carries the jet of a valve and is computed by none.
+std::string sorter_part(const Case& c) {
+  const SorterForecast f = sorter_forecast(c);
+  std::string text = fmt::format(
+      "  sorter       about {:.0f} particles on {:.4g} m of belt, {:.3g} s, {:.3g} t/h; they cover {:.3g} % "
+      "of it\n",
+      f.particles, f.belt, f.time, 3.6 * f.mass / f.time, 100.0 * f.cover);
+  for (const ParticleClassSpec& k : c.classes)
+    text += fmt::format("  class        \"{}\", {:.3g} % of the mass, {}\n", k.name, 100.0 * k.share,
+                        k.eject ? "to be ejected" : "to be kept");
+  text += fmt::format("  manifold     {} valves every {:.4g} mm{}\n", c.manifold.valves, 1e3 * valve_pitch(c),
+                      c.manifold.vessel > 0.0
+                          ? fmt::format(", from a vessel of {:.4g} L", 1e3 * c.manifold.vessel)
+                          : std::string());
+  return text;
+}
+
 }  // namespace
 
 std::string check_report(const Case& c, const Scene& scene, const std::vector<Problem>& warnings,
@@ -207,7 +225,9 @@ std::string check_report(const Case& c, const Scene& scene, const std::vector<Pr
       fmt::format("{}{}\n", c.path, c.run.title.empty() ? "" : fmt::format(": {}", c.run.title));
   const Company company = company_of(scene);
   std::optional<Grid> grid;
-  if (c.flow.solver != FlowSolver::none) {
+  if (c.sorter.enabled) {
+    text += sorter_part(c);
+  } else if (c.flow.solver != FlowSolver::none) {
     grid.emplace(make_grid(c));
     text += flow_part(c, company, scene.particles.bodies().subspan(scene.bodies), bandwidth);
   } else {
@@ -219,7 +239,8 @@ std::string check_report(const Case& c, const Scene& scene, const std::vector<Pr
     text += body_part(all, company, grid ? &*grid : nullptr, n, plate);
   text += grains_part(c, scene);
   for (const WallSpec& w : c.walls) text += wall_part(c, w);
-  text += valve_part(c) + plate_part(c, plate);
+  if (!c.sorter.enabled) text += valve_part(c);  // its controller says when valves open
+  text += plate_part(c, plate);
   const std::vector<output::Assumption> assumed = assumptions(c);
   if (!assumed.empty()) text += "  assumptions, since the case does not say:\n";
   for (const output::Assumption& a : assumed)

@@ -173,6 +173,10 @@ class Run {
 }  // namespace
 
 Result run(const Case& c, const Context& context) {
+  if (c.sorter.enabled)
+    throw InputError(fmt::format("{} is a whole sorter", c.path.empty() ? "the case" : c.path),
+                     {.expected = "ejecta sort, or a case without [sorter]",
+                      .example = fmt::format("ejecta sort {}", c.path)});
   const ThreadBudget budget(context.threads);
   if (context.files) Archive::require_place(*context.files);
   auto model = std::make_unique<CoupledModel>(c, context.note);

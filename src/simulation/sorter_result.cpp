@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "output/build_info.hpp"
+#include "output/results_table.hpp"
 #include "simulation/assumptions.hpp"
 #include "sorter/launch.hpp"
 
@@ -76,8 +77,8 @@ Json json_of(const SorterState& s) {
   Json sums = Json::array();
   for (const ShareSums& one : s.products.sums)
     sums.push_back({one.a, one.b, one.aa, one.ab, one.bb, one.pieces, one.count});
-  return {
-      {"cells", s.cells}, {"wall_time_s", s.wall_time}, {"total", s.products.total.values()}, {"sums", sums}};
+  return {{"cells", s.cells}, {"wall_time_s", s.wall_time}, {"total", s.products.total.values()},
+          {"sums", sums},     {"vessel_Pa", s.vessel},      {"lowest_vessel_Pa", s.lowest_vessel}};
 }
 
 SorterState sorter_state(const Json& json, std::size_t kinds) {
@@ -88,6 +89,8 @@ SorterState sorter_state(const Json& json, std::size_t kinds) {
     const auto v = json.at("sums").at(n).get<std::array<double, 7>>();
     s.products.sums[n] = {v[0], v[1], v[2], v[3], v[4], v[5], v[6]};
   }
+  s.vessel = json.at("vessel_Pa").get<std::vector<double>>();
+  s.lowest_vessel = json.at("lowest_vessel_Pa");
   return s;
 }
 
@@ -134,6 +137,7 @@ Json sorter_result(const Case& c, const Sorter& sorter, const SorterState& state
   r["air_Nm3_per_t"] = over(1e3 * air, mass);
   r["air_Nm3_per_t_ejected"] = over(1e3 * air, ejected_mass);
   r["air_least_work_kWh_per_t"] = over(sorter.air_use().least_work(total.air) / 3.6e6 * 1e3, mass);
+  if (sorter.vessel().is_there()) r["vessel_lowest_Pa"] = state.lowest_vessel;
   r["tier"] = "fast";
   r["resolved_shots"] = 0;
   r["wall_time_s"] = state.wall_time;
@@ -150,19 +154,17 @@ Json sorter_result(const Case& c, const Sorter& sorter, const SorterState& state
 }
 
 std::string fates_table(const Json& result) {
-  std::string text = "fate,product,number,mass [kg]";
+  output::ResultsTable table{.columns = {"fate", "product", "number", "mass [kg]"}, .rows = {}};
   for (const auto& k : result.at("classes"))
-    text += fmt::format(",{0} number,{0} mass [kg]", k.at("name").get<std::string>());
-  text += "\n";
+    for (const char* what : {" number", " mass [kg]"})
+      table.columns.push_back(k.at("name").get<std::string>() + what);
   for (const auto& row : result.at("fates")) {
-    text += fmt::format("{},{},{},{:.9g}", row.at("fate").get<std::string>(),
-                        row.at("product").get<std::string>(), row.at("number").get<double>(),
-                        row.at("mass_kg").get<double>());
+    std::vector<nlohmann::json> cells{row.at("fate"), row.at("product"), row.at("number"), row.at("mass_kg")};
     for (const auto& [name, k] : row.at("classes").items())
-      text += fmt::format(",{},{:.9g}", k.at("number").get<double>(), k.at("mass_kg").get<double>());
-    text += "\n";
+      for (const char* what : {"number", "mass_kg"}) cells.push_back(k.at(what));
+    table.rows.push_back(std::move(cells));
   }
-  return text;
+  return output::csv_text(table);
 }
 
 Json sorter_view(const Case& c, const SortedStretch& stretch) {
@@ -216,10 +218,14 @@ std::string sorter_sentence(const Json& r) {
                                               100 * r.at(std::string(name) + "_low").get<double>(),
                                               100 * r.at(std::string(name) + "_high").get<double>());
   };
-  return fmt::format(
+  std::string text = fmt::format(
       "{:.0f} particles, {:.3g} t/h: recovery {}, purity {}, loss {}; {:.3g} Nm3 of air a tonne",
       r.at("particles").get<double>(), r.at("throughput_t_h").get<double>(), percent("recovery_mass"),
       percent("purity_mass"), percent("loss_mass"), r.at("air_Nm3_per_t").get<double>());
+  if (r.contains("vessel_lowest_Pa"))
+    text +=
+        fmt::format("; its vessel falls to {:.3g} bar absolute", 1e-5 * r["vessel_lowest_Pa"].get<double>());
+  return text;
 }
 
 }  // namespace ejecta

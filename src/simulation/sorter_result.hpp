@@ -12,6 +12,9 @@ struct SorterState {
   std::int64_t cells = 0;  ///< computed so far
   Products products{};
   double wall_time = 0.0;  ///< s
+  /// Pa, of the vessel as each of the last cells came to the valves, and as the next one comes; empty: full.
+  std::vector<double> vessel{};
+  double lowest_vessel = 1e300;  ///< Pa, so far
 };
 nlohmann::ordered_json json_of(const SorterState& state);
 SorterState sorter_state(const nlohmann::ordered_json& json, std::size_t kinds);

@@ -17,6 +17,20 @@ namespace {
 
 constexpr std::int64_t kPieces = 8;  ///< pieces between two checkpoints
 
+/// work(piece) for each, side by side; the first that cannot be done says why.
+void for_each_piece(int pieces, const std::function<void(int)>& work) {
+  std::vector<std::string> failed(static_cast<std::size_t>(pieces));
+  for_each_index_dynamic(pieces, [&](int n) {
+    try {
+      work(n);
+    } catch (const InputError& e) {
+      failed[static_cast<std::size_t>(n)] = e.what();
+    }
+  });
+  for (const std::string& why : failed)
+    if (!why.empty()) throw InputError(why);
+}
+
 }  // namespace
 
 SorterDirectory::SorterDirectory(std::filesystem::path path, std::string input, bool force)
@@ -36,18 +50,17 @@ SorterDirectory::SorterDirectory(std::filesystem::path path, std::string input, 
 }
 
 SorterState SorterDirectory::read(std::size_t kinds) const {
-  nlohmann::ordered_json json;
   try {
-    json = nlohmann::ordered_json::parse(output::read_file(state()));
+    const auto json = nlohmann::ordered_json::parse(output::read_file(state()));
+    if (json.at("input_sha256").get<std::string>() != input_)
+      throw InputError(
+          fmt::format("{} holds the results of another case, or of this one before it was changed\n"
+                      "  expected: --force, to start anew, or another --out",
+                      path_.string()));
+    return sorter_state(json, kinds);
   } catch (const nlohmann::json::exception&) {
     throw InputError(fmt::format("{} is damaged\n  expected: --force, to start anew", state().string()));
   }
-  if (json.value("input_sha256", "") != input_)
-    throw InputError(
-        fmt::format("{} holds the results of another case, or of this one before it was changed\n"
-                    "  expected: --force, to start anew, or another --out",
-                    path_.string()));
-  return sorter_state(json, kinds);
 }
 
 void SorterDirectory::write(const SorterState& s) const {
@@ -56,36 +69,71 @@ void SorterDirectory::write(const SorterState& s) const {
   output::write_file(state(), json.dump());
 }
 
-std::int64_t cells_of_sorter(const Case& c, const Sorter& sorter) {
-  const Feed& feed = sorter.feed();
+std::int64_t cells_of_sorter(const Case& c, const Feed& feed) {
   if (feed.cells_of_file() > 0) return feed.cells_of_file();
   return std::max<std::int64_t>(1,
                                 static_cast<std::int64_t>(std::ceil(c.sorter.particles / feed.mean_count())));
 }
 
+SorterForecast sorter_forecast(const Case& c) {
+  const Feed feed(c);
+  const std::int64_t cells = cells_of_sorter(c, feed);
+  SorterForecast f{.belt = static_cast<double>(cells) * feed.cell_length()};
+  f.time = f.belt / c.launch.belt_speed;
+  double area = 0.0;
+  if (feed.cells_of_file() > 0) {
+    for (const FeedParticle& p : feed.cells(0, cells)) {
+      f.particles += 1.0;
+      f.mass += p.mass;
+      area += plan_area(p);
+    }
+  } else {
+    for (std::size_t k = 0; k < c.classes.size(); ++k) {
+      const double count = feed.mean_count(k) * static_cast<double>(cells);
+      f.particles += count;
+      f.mass += count * feed.classes()[k].mean_mass();
+      area += count * feed.classes()[k].mean_area();
+    }
+  }
+  f.cover = area / (f.belt * c.sorter.belt_width);
+  return f;
+}
+
 bool run_sorter(const Case& c, const Sorter& sorter, std::int64_t cells, SorterState& state,
                 const std::function<void(const SorterState&)>& keep, const std::function<bool()>& stop) {
+  const auto halo = static_cast<std::size_t>(sorter.halo());
+  if (state.vessel.empty()) state.vessel.assign(halo + 1, sorter.vessel().full());
   while (state.cells < cells) {
     if (stop()) return false;
     const double began = wall_seconds();
     const std::int64_t until = std::min(cells, state.cells + kSorterPiece * kPieces);
     const auto pieces = static_cast<int>((until - state.cells + kSorterPiece - 1) / kSorterPiece);
-    std::vector<SortedStretch> sorted(static_cast<std::size_t>(pieces));
-    std::vector<std::string> failed(static_cast<std::size_t>(pieces));
+    const auto first_of = [&](int n) { return std::min(state.cells + n * kSorterPiece, until); };
     sorter.prepare(state.cells, until);
-    for_each_index_dynamic(pieces, [&](int n) {
-      const std::int64_t first = state.cells + n * kSorterPiece;
-      try {
-        sorted[static_cast<std::size_t>(n)] = sorter.sort(first, std::min(first + kSorterPiece, until));
-      } catch (const InputError& e) {
-        failed[static_cast<std::size_t>(n)] = e.what();
-      }
+    // Of a vessel: what all valves do, side by side, then what it leaves, cell after cell.
+    std::vector<double> vessel = state.vessel;  // at the beginnings of the cells, from the halo of the first
+    if (sorter.vessel().is_there()) {
+      std::vector<ValvePulses> pulses(static_cast<std::size_t>(pieces));
+      for_each_piece(pieces, [&](int n) {
+        pulses[static_cast<std::size_t>(n)] = sorter.pulses(first_of(n), first_of(n + 1));
+      });
+      for (int n = 0; n < pieces; ++n)
+        for (std::int64_t cell = first_of(n); cell < first_of(n + 1); ++cell)
+          vessel.push_back(sorter.vessel().after(pulses[static_cast<std::size_t>(n)], sorter.comes_at(cell),
+                                                 sorter.comes_at(cell + 1), vessel.back()));
+    } else {
+      vessel.resize(vessel.size() + static_cast<std::size_t>(until - state.cells), vessel.back());
+    }
+    std::vector<SortedStretch> sorted(static_cast<std::size_t>(pieces));
+    for_each_piece(pieces, [&](int n) {
+      sorted[static_cast<std::size_t>(n)] =
+          sorter.sort(first_of(n), first_of(n + 1), 0, vessel[static_cast<std::size_t>(n * kSorterPiece)]);
     });
-    for (const std::string& why : failed)
-      if (!why.empty()) throw InputError(why);
     for (const SortedStretch& piece : sorted)
       for (const Tally& cell : piece.cells) state.products.add(cell, c.classes);
     state.cells = until;
+    state.vessel.assign(vessel.end() - static_cast<std::ptrdiff_t>(halo) - 1, vessel.end());
+    state.lowest_vessel = std::min(state.lowest_vessel, *std::min_element(vessel.begin(), vessel.end()));
     state.wall_time += wall_seconds() - began;
     keep(state);
   }

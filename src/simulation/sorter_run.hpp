@@ -28,7 +28,14 @@ class SorterDirectory {
 inline constexpr std::int64_t kSorterPiece = 4;
 
 /// Cells of belt until about sorter.particles have passed, or until the file of the feed ends.
-std::int64_t cells_of_sorter(const Case& c, const Sorter& sorter);
+std::int64_t cells_of_sorter(const Case& c, const Feed& feed);
+
+/// What will pass: expected values, of a feed from a file what it holds.
+struct SorterForecast {
+  double particles = 0.0, belt = 0.0, time = 0.0;  ///< belt: m that passes; s
+  double mass = 0.0, cover = 0.0;                  ///< kg; share of the belt
+};
+SorterForecast sorter_forecast(const Case& c);
 
 /// Goes on from `state` to `cells`, a portion at a time on all threads, each the same whatever came before
 /// it. keep(state) after every portion; false: stop() said so first. Throws InputError.

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "case/extent.hpp"
+
 namespace ejecta {
 namespace {
 
@@ -54,6 +56,17 @@ BodySpec body_of(const Case& c, const ShotBody& shot_body, std::size_t n) {
   return b;
 }
 
+/// More fine cells across, where they do not hold all bodies and orifices of the shot.
+void widen(AxisSpec& axis, double low, double high) {
+  if (axis.points.size() < 2 || axis.cells.size() + 1 != axis.points.size()) return;
+  const FineBlock fine = fine_block(axis);
+  const auto more = [&](double by) { return std::max(0, static_cast<int>(std::ceil(by / fine.cell))); };
+  const int below = more(fine.low - low), above = more(high - fine.high);
+  axis.cells[fine.block] += below + above;
+  for (std::size_t n = 0; n < axis.points.size(); ++n)
+    axis.points[n] += (n <= fine.block ? -below : above) * fine.cell;
+}
+
 }  // namespace
 
 Case resolved_case(const Case& sorter, const Shot& shot) {
@@ -79,6 +92,17 @@ Case resolved_case(const Case& sorter, const Shot& shot) {
     c.bodies.push_back(body_of(sorter, shot.bodies[n], n));
     c.bodies.back().across -= places.front();  // the belt's middle is the first orifice's
   }
+  double low = places.front(), high = places.front();
+  for (const double place : places) {
+    low = std::min(low, place);
+    high = std::max(high, place);
+  }
+  for (const ShotBody& b : shot.bodies) {
+    const double radius = b.particle.scale * b.particle.prototype->shape.bounding_radius();
+    low = std::min(low, b.y - radius);
+    high = std::max(high, b.y + radius);
+  }
+  widen(c.grid.axis[1], centre.y() + low, centre.y() + high);
   return c;
 }
 

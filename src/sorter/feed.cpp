@@ -21,9 +21,21 @@ constexpr double kCellOverSize = 5.0;  ///< at least this many of the largest pa
 constexpr int kTries = 4000;           ///< to lay a particle where none lies
 /// Random sequential laying of equal squares or discs ends at 0.53 to 0.55 (Feder 1980; Viot & Tarjus 1990).
 constexpr double kMostCover = 0.45;
+/// How full one cell may be by chance: the fullest of some thousands.
+constexpr double kFullestCell = 0.5, kDeviationsOfFullest = 4.0;
+constexpr double kParticlesACell = 100.0;     ///< of a monolayer: fewer vary too much from cell to cell
 constexpr double kLongestRun = 10 * 86400.0;  ///< s, of the belt: even empty cells take time
 
 double belt_carries(const Case& c) { return c.launch.belt_speed * c.sorter.belt_width; }  ///< m2/s
+
+/// m, of the strip; per_mass: particles a kg; `largest`: m.
+double cell_length(const Case& c, double largest, double per_mass, double tray) {
+  double length = std::max(kCell, kCellOverSize * largest / std::min(tray, 1.0));
+  const double per_metre = c.sorter.throughput * per_mass / c.launch.belt_speed;
+  if (c.feed.presentation == Presentation::monolayer && per_metre > 0.0)
+    length = std::max(length, std::min(kParticlesACell / per_metre, 20.0 * length));
+  return length;
+}
 
 double radius_of(const FeedParticle& p) {
   double most = 0.0;
@@ -98,6 +110,7 @@ CsvTable read_log(const Case& c, std::vector<Problem>& problems) {
                              .example_row = "12.5, -30, 0, 10, 45"},
                             problems);
   const double half = 0.5 * c.sorter.belt_width;
+  const double pixel = c.sorter.belt_width / c.camera.pixels, farthest = kLongestRun * c.launch.belt_speed;
   double last = 0.0;
   for (std::size_t n = 0; n < table.rows.size() && problems.empty(); ++n) {
     const std::vector<double>& row = table.rows[n];
@@ -109,8 +122,16 @@ CsvTable read_log(const Case& c, std::vector<Problem>& problems) {
       wrong("not on the belt", fmt::format("y from {:.4g} to {:.4g} mm", -1e3 * half, 1e3 * half));
     else if (row[2] != std::floor(row[2]) || row[2] < 0.0 || row[2] >= static_cast<double>(c.classes.size()))
       wrong("no kind of this case", fmt::format("a whole number from 0 to {}", c.classes.size() - 1));
-    else if (!(row[3] > 0.0) || row[3] >= c.sorter.belt_width)
-      wrong("no size", fmt::format("above 0 and below the belt's width of {:.4g} mm", 2e3 * half));
+    else if (row[0] > farthest)
+      wrong("farther along the belt than it runs in ten days",
+            fmt::format("x up to {:.4g} mm", 1e3 * farthest));
+    else if (row[3] < pixel || row[3] >= c.sorter.belt_width)
+      wrong("no size", fmt::format("from a pixel, {:.4g} mm, to below the belt's width of {:.4g} mm",
+                                   1e3 * pixel, 2e3 * half));
+    else if (std::abs(row[1]) + 0.5 * row[3] > half * (1.0 + 1e-9))
+      wrong("hangs over the side of the belt",
+            fmt::format("y from {0:.4g} to {1:.4g} mm for that size", -1e3 * (half - 0.5 * row[3]),
+                        1e3 * (half - 0.5 * row[3])));
     last = row[0];
   }
   if (problems.empty() && table.rows.empty()) problems.push_back({.what = file + " holds no particle"});
@@ -127,7 +148,9 @@ Feed::Feed(const Case& c) : sorter_(c.sorter), feed_(c.feed) {
   }
   const bool feeder = feed_.presentation == Presentation::feeder;
   const double tray = feeder ? feed_.lip_speed / c.launch.belt_speed : 1.0;
-  cell_length_ = std::max(kCell, kCellOverSize * largest / std::min(tray, 1.0));
+  double per_mass = 0.0;
+  for (const ParticleClass& k : classes_) per_mass += k.spec().share / k.mean_mass();
+  cell_length_ = ejecta::cell_length(c, largest, per_mass, tray);
   laid_length_ = tray * cell_length_;
   for (const ParticleClass& k : classes_)
     mean_count_.push_back(c.sorter.throughput * k.spec().share / k.mean_mass() / c.launch.belt_speed *
@@ -287,7 +310,8 @@ std::vector<Problem> check_feed(const Case& c) {
       continue;
     }
     const double least = classes.back().size_at(0.01),
-                 most = classes.back().size_at(0.99) / c.classes[k].elongation;
+                 rarest = 1.0 / std::max(100.0, static_cast<double>(c.sorter.particles)),
+                 most = classes.back().size_at(1.0 - rarest) / c.classes[k].elongation;
     const std::string key = fmt::format("sorter.class.{}.size", k);
     if (most >= c.sorter.belt_width)
       problems.push_back({.key = key,
@@ -328,19 +352,24 @@ std::vector<Problem> check_feed(const Case& c) {
     problems.push_back({.key = "sorter.throughput",
                         .what = fmt::format("the belt would have to run {:.3g} days to bring {} particles",
                                             runs / 86400, c.sorter.particles),
-                        .expected = fmt::format("at least {:.2g} t/h, or fewer sorter.particles",
+                        .expected = fmt::format("at least {:.4g} t/h, or fewer sorter.particles",
                                                 3.6 * c.sorter.throughput * runs / kLongestRun),
-                        .example = fmt::format("throughput = \"{:.2g} t/h\"",
+                        .example = fmt::format("throughput = \"{:.4g} t/h\"",
                                                3.6 * 0.05 * belt_carries(c) / area_per_mass)});
   const double belt = belt_carries(c), cover = c.sorter.throughput * area_per_mass / belt;
-  const double most = c.feed.presentation == Presentation::independent ? 1.0 : kMostCover;
+  double most = c.feed.presentation == Presentation::independent ? 1.0 : kMostCover;
+  if (c.feed.presentation == Presentation::monolayer) {
+    const double cell = cell_length(c, 0.0, per_mass, 1.0),
+                 count = c.sorter.throughput * per_mass * cell / c.launch.belt_speed;
+    most = std::min(most, kFullestCell / (1.0 + kDeviationsOfFullest / std::sqrt(std::max(count, 1.0))));
+  }
   if (cover > most)
     problems.push_back(
         {.key = "sorter.throughput",
          .what = fmt::format("the belt cannot carry it: particles would cover {:.0f} % of it", 100 * cover),
          .expected = fmt::format("at most {:.3g} t/h, a cover of {:.0f} %", 3.6 * most * belt / area_per_mass,
                                  100 * most),
-         .example = fmt::format("throughput = \"{:.2g} t/h\"", 3.6 * 0.5 * most * belt / area_per_mass)});
+         .example = fmt::format("throughput = \"{:.4g} t/h\"", 3.6 * 0.5 * most * belt / area_per_mass)});
   const double on_tray = cover * c.launch.belt_speed / c.feed.lip_speed;
   if (problems.empty() && c.feed.presentation == Presentation::feeder && on_tray > kMostCover)
     problems.push_back(

@@ -79,5 +79,7 @@ struct ValvePulse {
   double strength = 1.0;        ///< momentum of its jet over that of the full supply
   double use = 1.0;             ///< of air, likewise
 };
+/// Of every valve, in ascending time.
+using ValvePulses = std::vector<std::vector<ValvePulse>>;
 
 }  // namespace ejecta

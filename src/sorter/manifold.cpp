@@ -26,9 +26,8 @@ Manifold::Manifold(const Case& c) : shortest_off_(c.controller.shortest_off) {
 
 int Manifold::dead_count() const { return static_cast<int>(std::count(dead_.begin(), dead_.end(), true)); }
 
-std::vector<std::vector<ValvePulse>> Manifold::pulses(std::span<const ValveCommand> commands,
-                                                      bool with_dead) const {
-  std::vector<std::vector<ValvePulse>> list(dead_.size());
+ValvePulses Manifold::pulses(std::span<const ValveCommand> commands, bool with_dead) const {
+  ValvePulses list(dead_.size());
   for (const ValveCommand& c : commands)
     for (int v = c.first; v <= c.last; ++v)
       if (with_dead || !dead_[static_cast<std::size_t>(v)])

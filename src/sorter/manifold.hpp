@@ -14,8 +14,7 @@ class Manifold {
 
   /// By valve, in ascending time. Commands that overlap, or lie nearer than the shortest break, become one.
   /// Without `with_dead` dead valves do not open.
-  std::vector<std::vector<ValvePulse>> pulses(std::span<const ValveCommand> commands,
-                                              bool with_dead = false) const;
+  ValvePulses pulses(std::span<const ValveCommand> commands, bool with_dead = false) const;
   bool is_dead(int valve) const { return dead_[static_cast<std::size_t>(valve)]; }
   int dead_count() const;
   /// s, that a valve is slower than its kind.

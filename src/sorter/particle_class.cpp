@@ -20,8 +20,9 @@ namespace {
 constexpr int kRocks = 32;       ///< different shapes of a class of rocks
 constexpr int kRockPoints = 24;  ///< of which each is the hull
 /// Longest edge of a piece of surface: beside the smallest dimension, and beside the jet, whose velocity
-/// falls to a half within 6.5 mm where bodies cross it, m.
-constexpr double kPieceOverSize = 0.71, kPiece = 7.1e-3;
+/// falls to a half within 6.5 mm where bodies cross it, m. The faces of thin flakes need no pieces as small
+/// as their rims: beside the sphere around the body.
+constexpr double kPieceOverSize = 0.71, kPiece = 7.1e-3, kPieceOverSphere = 0.14;
 
 /// Divides a triangle until its edges are short; curved shapes come as small triangles already.
 void add_pieces(const Vec3& a, const Vec3& b, const Vec3& c, double edge,
@@ -83,7 +84,8 @@ Prototype make_prototype(Shape shape, double size, bool sharp, double tolerance)
   p.outline = convex_outline(std::move(plan));
   p.area = area_of_outline(p.outline);
   p.perimeter = perimeter_of_outline(p.outline);
-  const double edge = std::min(kPiece, kPieceOverSize * shape.smallest_feature());
+  const double edge = std::min(kPiece, std::max(kPieceOverSize * shape.smallest_feature(),
+                                                kPieceOverSphere * 2.0 * shape.bounding_radius()));
   for (const auto& t : mesh.triangles)
     add_pieces(mesh.vertices[static_cast<std::size_t>(t[0])], mesh.vertices[static_cast<std::size_t>(t[1])],
                mesh.vertices[static_cast<std::size_t>(t[2])], edge, p.surface);

@@ -12,8 +12,24 @@ namespace {
 /// s, from a particle's passing: what a valve does earlier or later it does not feel.
 constexpr double kLongest = 0.05;
 
+/// Deviations of the arrival that the halo of a stretch holds: of a million particles one comes farther off.
+constexpr double kDeviations = 5.0;
+
 constexpr double kSlips =
     10e-3;  ///< m/s, on the belt: 2 mm from the camera of the paper's machine to its jets
+
+double middle_of(const SeenObject& o) { return 0.5 * (o.x_low + o.x_high); }
+
+/// Cells of belt beside a stretch whose commands may blow on what lies in it: as far as a command is ahead of
+/// its object, lasts, and is felt, and as particles come late.
+std::int64_t halo_cells(const Case& c, double cell_length) {
+  const ControllerSpec& k = c.controller;
+  const double by_rule = k.window == WindowRule::fixed ? k.duration : 2.0 * k.quantile * k.time_error;
+  const double time = kLongest + std::abs(k.lead) + std::max(by_rule, k.shortest_on) + k.shortest_off +
+                      kDeviations * (c.feed.arrival_scatter + c.manifold.delay_spread);
+  return std::max<std::int64_t>(
+      1, static_cast<std::int64_t>(std::ceil(time * c.launch.belt_speed / cell_length)));
+}
 
 }  // namespace
 
@@ -22,8 +38,8 @@ struct Sorter::Scene {
   std::vector<SeenObject> objects;
   std::vector<int> object_of;  // of a particle; -1: none
   std::vector<ValveCommand> commands;
-  std::vector<std::vector<ValvePulse>> pulses;
-  std::vector<std::vector<ValvePulse>> pulses_with_dead;  // as if no valve were dead; empty: none is
+  ValvePulses pulses;
+  ValvePulses pulses_with_dead;  // as if no valve were dead; empty: none is
 };
 
 Ejection fast_ejection(const Case& c, const JetSource& source) {
@@ -43,10 +59,18 @@ Sorter::Sorter(const Case& c, Ejection ejection)
       manifold_(c),
       ejection_(std::move(ejection)),
       vessel_(c),
-      air_use_(c) {}
+      air_use_(c),
+      halo_(halo_cells(c, feed_.cell_length())) {}
 
-FlightEnd Sorter::fly(const FeedParticle& p, const std::vector<std::vector<ValvePulse>>& pulses, bool as_seen,
-                      bool keep_path) const {
+double Sorter::comes_at(std::int64_t cell) const {
+  return static_cast<double>(cell) * feed_.cell_length() / case_.launch.belt_speed - case_.controller.lead;
+}
+
+ValvePulses Sorter::pulses(std::int64_t first, std::int64_t last) const {
+  return manifold_.pulses(look(first, last).commands);
+}
+
+FlightEnd Sorter::fly(const FeedParticle& p, const ValvePulses& pulses, bool as_seen, bool keep_path) const {
   const double at = p.x / case_.launch.belt_speed + (as_seen ? 0.0 : p.late),
                y = p.y + (as_seen ? 0.0 : p.beside);
   const double reach = ejection_.reach(p), pitch = valve_pitch(case_);
@@ -94,7 +118,7 @@ Fate Sorter::fate_of(const Scene& s, std::size_t n, FlightEnd* end) const {
 
 Sorter::Scene Sorter::look(std::int64_t first, std::int64_t last) const {
   Scene s;
-  s.particles = feed_.cells(first - 1, last + 1);
+  s.particles = feed_.cells(first - halo_, last + halo_);
   s.objects = camera_.look(s.particles);
   s.object_of.assign(s.particles.size(), -1);
   for (std::size_t o = 0; o < s.objects.size(); ++o)
@@ -155,20 +179,31 @@ std::vector<Shot> Sorter::shots(std::int64_t cell) const {
   const Scene s = look(cell, cell + 1);
   std::vector<Shot> list;
   for (std::size_t n = 0; n < s.commands.size(); ++n)
-    if (feed_.cell_of(s.objects[static_cast<std::size_t>(s.commands[n].object)].x_low) == cell)
+    if (feed_.cell_of(middle_of(s.objects[static_cast<std::size_t>(s.commands[n].object)])) == cell)
       list.push_back(shot(s, s.commands, n));
   return list;
 }
 
-SortedStretch Sorter::sort(std::int64_t first, std::int64_t last, int show) const {
+/// An opening counts where it begins, its air over the time that it is open.
+void Sorter::add_use(const ValvePulse& p, std::int64_t first, std::span<Tally> cells) const {
+  const double air = p.use * air_use_.mass(p.to - p.from) / (p.to - p.from);
+  for (std::size_t n = 0; n < cells.size(); ++n) {
+    const auto cell = first + static_cast<std::int64_t>(n);
+    const double from = comes_at(cell), to = comes_at(cell + 1);
+    if (p.from >= from && p.from < to) cells[n].openings += 1.0;
+    cells[n].air += air * std::max(0.0, std::min(p.to, to) - std::max(p.from, from));
+  }
+}
+
+SortedStretch Sorter::sort(std::int64_t first, std::int64_t last, int show,
+                           std::optional<double> pressure) const {
   Scene s = look(first, last);
   const std::vector<ValveCommand>& commands = s.commands;
   s.pulses = manifold_.pulses(commands);
-  vessel_.draw(s.pulses);
-  if (manifold_.dead_count() > 0) {
-    s.pulses_with_dead = manifold_.pulses(commands, true);
-    vessel_.draw(s.pulses_with_dead);
-  }
+  if (manifold_.dead_count() > 0) s.pulses_with_dead = manifold_.pulses(commands, true);
+  if (vessel_.is_there())
+    for (ValvePulses* pulses : {&s.pulses, &s.pulses_with_dead})
+      vessel_.draw(*pulses, comes_at(first - halo_), pressure.value_or(vessel_.full()));
   const std::vector<bool> single = standing_alone(s.particles, case_.camera.gap);
 
   SortedStretch out;
@@ -199,22 +234,18 @@ SortedStretch Sorter::sort(std::int64_t first, std::int64_t last, int show) cons
     kind.alone_seen += o >= 0 && s.objects[static_cast<std::size_t>(o)].members.size() == 1;
     if (shown) out.shown.push_back({p, fate, end.path, end.path_from});
   }
-  const double begins = static_cast<double>(first - 1) * feed_.cell_length(),
-               ends = static_cast<double>(last + 1) * feed_.cell_length();
+  const double begins = static_cast<double>(first - halo_) * feed_.cell_length(),
+               ends = static_cast<double>(last + halo_) * feed_.cell_length();
   for (const SeenObject& o : s.objects)
-    if (Tally* tally = tally_at(o.x_low)) {
+    if (Tally* tally = tally_at(middle_of(o))) {
       tally->objects += 1.0;
       tally->cut += o.x_high > ends - camera_.pixel() || o.x_low < begins + camera_.pixel();
     }
-  const double v = case_.launch.belt_speed;
   for (const ValveCommand& c : commands)
-    if (Tally* tally = tally_at(s.objects[static_cast<std::size_t>(c.object)].x_low)) tally->shots += 1.0;
+    if (Tally* tally = tally_at(middle_of(s.objects[static_cast<std::size_t>(c.object)])))
+      tally->shots += 1.0;
   for (const auto& pulses : s.pulses)
-    for (const ValvePulse& p : pulses)
-      if (Tally* tally = tally_at(p.from * v)) {
-        tally->openings += 1.0;
-        tally->air += p.use * air_use_.mass(p.to - p.from);
-      }
+    for (const ValvePulse& p : pulses) add_use(p, first, out.cells);
   if (show > 0) {
     out.objects = s.objects;
     out.pulses = s.pulses;

@@ -1,6 +1,7 @@
 #pragma once
 #include <functional>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "case/case.hpp"
@@ -29,8 +30,8 @@ struct ShownParticle {
 struct SortedStretch {
   std::vector<Tally> cells;
   std::vector<ShownParticle> shown{};
-  std::vector<SeenObject> objects{};              ///< where particles are shown
-  std::vector<std::vector<ValvePulse>> pulses{};  ///< of each valve, likewise
+  std::vector<SeenObject> objects{};  ///< where particles are shown
+  ValvePulses pulses{};               ///< of each valve, likewise
 };
 
 /// How a body flies over the jets: a tier of the ejection.
@@ -47,16 +48,23 @@ struct Ejection {
 Ejection fast_ejection(const Case& c, const JetSource& source);
 
 /// The machine: feed -> camera -> controller -> manifold -> flight -> fates. A stretch of belt is a pure
-/// function of the case and its place: it is computed with a cell more at either end, so that what lies there
-/// sees its neighbours.
+/// function of the case, its place, and the pressure that a vessel has by then: it is computed with halo()
+/// cells more at either end, so that what lies there sees all that may blow on it.
 class Sorter {
  public:
   Sorter(const Case& c, Ejection ejection);
-  /// Cells [first, last); of the first `show` particles everything is kept.
-  SortedStretch sort(std::int64_t first, std::int64_t last, int show = 0) const;
+  /// Cells [first, last); of the first `show` particles everything is kept. `pressure`: of the vessel, Pa, as
+  /// the first cell of the halo comes to the valves; it is full by default.
+  SortedStretch sort(std::int64_t first, std::int64_t last, int show = 0,
+                     std::optional<double> pressure = {}) const;
+  /// What the valves do as these cells and their halo pass.
+  ValvePulses pulses(std::int64_t first, std::int64_t last) const;
+  /// s, at which a cell comes to the valves: the commands that it asks for begin about then.
+  double comes_at(std::int64_t cell) const;
+  std::int64_t halo() const { return halo_; }
 
   /// Computes side by side what these cells need of each other's feed: optional, for speed.
-  void prepare(std::int64_t first, std::int64_t last) const { feed_.prepare(first - 1, last + 1); }
+  void prepare(std::int64_t first, std::int64_t last) const { feed_.prepare(first - halo_, last + halo_); }
 
   /// The shots whose objects begin in a cell, each with the particles within its reach, flown by the fast
   /// tier as if no other valve blew.
@@ -66,14 +74,15 @@ class Sorter {
   const Camera& camera() const { return camera_; }
   const Manifold& manifold() const { return manifold_; }
   const AirUse& air_use() const { return air_use_; }
+  const AirVessel& vessel() const { return vessel_; }
 
  private:
   struct Scene;
   Fate fate_of(const Scene& scene, std::size_t n, FlightEnd* end) const;
   Scene look(std::int64_t first, std::int64_t last) const;
+  void add_use(const ValvePulse& pulse, std::int64_t first, std::span<Tally> cells) const;
   Shot shot(const Scene& scene, std::span<const ValveCommand> commands, std::size_t which) const;
-  FlightEnd fly(const FeedParticle& p, const std::vector<std::vector<ValvePulse>>& pulses, bool as_seen,
-                bool keep_path) const;
+  FlightEnd fly(const FeedParticle& p, const ValvePulses& pulses, bool as_seen, bool keep_path) const;
 
   Case case_;
   Feed feed_;
@@ -83,6 +92,7 @@ class Sorter {
   Ejection ejection_;
   AirVessel vessel_;
   AirUse air_use_;
+  std::int64_t halo_ = 1;
 };
 
 }  // namespace ejecta

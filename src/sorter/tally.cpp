@@ -82,15 +82,34 @@ void ShareSums::add(double part, double whole, double particles) {
   count += particles;
 }
 
+namespace {
+
+/// Fewer pieces do not know their own scatter well: it is then at least that of independent particles.
+constexpr double kManyPieces = 30.0;
+
+/// Within so many standard deviations lie 95 % of Student's distribution; above four degrees of freedom by
+/// its expansion about the normal one (Abramowitz & Stegun 1964, 26.7.5).
+double student(double freedom) {
+  constexpr std::array<double, 5> few{0.0, 12.706, 4.303, 3.182, 2.776};
+  if (freedom < 5.0) return few[static_cast<std::size_t>(freedom)];
+  constexpr double z = 1.959964, z3 = z * z * z, z5 = z3 * z * z, z7 = z5 * z * z;
+  return z + (z3 + z) / (4.0 * freedom) + (5.0 * z5 + 16.0 * z3 + 3.0 * z) / (96.0 * freedom * freedom) +
+         (3.0 * z7 + 19.0 * z5 + 17.0 * z3 - 15.0 * z) / (384.0 * freedom * freedom * freedom);
+}
+
+}  // namespace
+
 Share ShareSums::share() const {
   if (!(b > 0.0)) return {};
   Share s{.value = a / b, .known = true};
+  if (pieces < 2.0) return s;  // one tells nothing of the scatter: anything from 0 to 1
   // The variance of a ratio of sums over pieces (Cochran 1977, 6.3).
   const double r = s.value, scatter = aa - 2.0 * r * ab + r * r * bb;
-  const double variance = pieces > 1.0 ? std::max(scatter, 0.0) / (b * b) * pieces / (pieces - 1.0) : 0.0;
-  const double spread = r * (1.0 - r),
-               independent = variance > 1e-300 && spread > 1e-12 ? spread / variance : count;
-  constexpr double z = 1.959964;
+  const double variance = std::max(scatter, 0.0) / (b * b) * pieces / (pieces - 1.0);
+  const double spread = r * (1.0 - r);
+  double independent = variance > 1e-300 && spread > 1e-12 ? spread / variance : count;
+  if (pieces < kManyPieces) independent = std::min(independent, count);
+  const double z = student(pieces - 1.0);
   const double n = std::max(independent, 1.0), middle = (r + z * z / (2 * n)) / (1 + z * z / n),
                half = z / (1 + z * z / n) * std::sqrt(std::max(spread, 0.0) / n + z * z / (4 * n * n));
   s.low = std::max(0.0, middle - half);

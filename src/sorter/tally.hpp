@@ -61,7 +61,8 @@ struct ShareSums {
   double a = 0.0, b = 0.0, aa = 0.0, ab = 0.0, bb = 0.0, pieces = 0.0;
   double count = 0.0;  ///< particles in b
   void add(double part, double whole, double particles);
-  /// a/b with Wilson's interval (1927) for as many independent particles as the scatter of the pieces allows.
+  /// a/b with Wilson's interval (1927) for as many independent particles as the scatter of the pieces allows,
+  /// widened by Student's factor for few pieces; of one piece 0 to 1.
   Share share() const;
 };
 

@@ -13,22 +13,6 @@
 namespace ejecta {
 namespace {
 
-/// The block of an axis with the smallest cells: its ends and their width, m.
-struct FineBlock {
-  double low = 0.0, high = 0.0, cell = 1e300;
-};
-FineBlock fine_block(const AxisSpec& axis) {
-  FineBlock finest;
-  for (std::size_t b = 0; b < axis.cells.size(); ++b) {
-    const double length = axis.points[b + 1] - axis.points[b],
-                 grading = axis.grading.empty() ? 1.0 : axis.grading[b];
-    const double cell = std::max(cell_width(length, axis.cells[b], grading, 0),
-                                 cell_width(length, axis.cells[b], grading, axis.cells[b] - 1));
-    if (cell < finest.cell) finest = {axis.points[b], axis.points[b + 1], cell};
-  }
-  return finest;
-}
-
 /// The box goes half of the way with the body, so that its fine cells hold both the jet and the body, and
 /// further where they would not hold the body; by whole cells, so that the jet lies in its cells as before.
 void follow(AxisSpec& axis, double y, double half_width) {

@@ -113,6 +113,18 @@ struct Variable {
   }
 };
 
+/// Digits of the longest part of a JSON pointer that is a number.
+std::size_t longest_number(const std::string& pointer) {
+  std::size_t longest = 0;
+  for (std::size_t at = 0; at < pointer.size(); ++at) {
+    const std::size_t end = std::min(pointer.find('/', at), pointer.size());
+    const std::string part = pointer.substr(at, end - at);
+    if (part.find_first_not_of("0123456789") == std::string::npos) longest = std::max(longest, part.size());
+    at = end;
+  }
+  return longest;
+}
+
 class Setup {
  public:
   Setup(const Node& root, const Case& base, const FurtherChecks& further)
@@ -198,6 +210,7 @@ class Setup {
         if (spec.steps < 2)
           return wrong("steps", "a range needs its number of values here", "a whole number, at least 2", "",
                        "steps = 6");
+        if (spec.steps > static_cast<int>(kMostTasks)) return too_many(path + ".steps", spec.steps);
         for (int i = 0; i < spec.steps; ++i)
           v.values.push_back(v.range->at(v.from, v.to, double(i) / (spec.steps - 1), v.place));
       }
@@ -215,7 +228,8 @@ class Setup {
   void check_quantities() {
     for (std::size_t n = 0; n < spec_.quantities.size(); ++n) {
       const std::string& q = spec_.quantities[n];
-      bool good = q.starts_with('/');
+      // An index that no list has is no place either: the library would throw it once a result is there.
+      bool good = q.starts_with('/') && longest_number(q) < 10;
       try {
         (void)Json::json_pointer(q);
       } catch (const nlohmann::json::exception&) {
@@ -232,11 +246,20 @@ class Setup {
     }
   }
 
+  void too_many(const std::string& key, double count) {
+    refuse({.key = key,
+            .what = fmt::format("a study of {:.0f} runs", count),
+            .expected = fmt::format("at most {}: fewer values, or samples", kMostTasks),
+            .example = "design = \"sobol\", samples = 256",
+            .place = locate(root_, key)});
+  }
+
   /// For each run the value of each variable.
   std::vector<std::vector<Node>> combinations() {
     std::vector<std::vector<Node>> runs;
     if (drawn()) {
       const int count = spec_.samples, dimensions = static_cast<int>(variables_.size());
+      if (count > static_cast<int>(kMostTasks)) too_many("study.samples", count);
       if (count < 1)
         refuse({.key = "study.samples",
                 .what = "a design that is drawn needs the number of its runs",
@@ -268,11 +291,7 @@ class Setup {
     double count = 1.0;
     for (const Variable& v : variables_) count *= double(v.values.size());
     if (count > double(kMostTasks)) {
-      refuse({.key = "study",
-              .what = fmt::format("a grid of {:.0f} runs", count),
-              .expected = fmt::format("at most {}: fewer values, or samples", kMostTasks),
-              .example = "design = \"sobol\"",
-              .place = locate(root_, "study")});
+      too_many("study", count);
       throw_if_any();
     }
     runs.emplace_back();
@@ -292,6 +311,7 @@ class Setup {
     Node plain = root_;  // what is studied is no part of the runs
     std::erase_if(plain.children, [](const Node& n) { return n.key == "study" || n.key == "map"; });
     std::set<std::pair<std::size_t, std::string>> told;  // a value of a grid is in many runs
+    std::set<std::string> seen;
     std::vector<NewTask> tasks;
     for (const std::vector<Node>& values : combinations()) {
       Node root = plain;
@@ -303,6 +323,15 @@ class Setup {
       if (found.empty()) {
         Json labels = Json::object();
         for (const Variable& v : variables_) labels[v.key] = json_of(*find_key(c, v.key));
+        if (!seen.insert(labels.dump()).second)
+          found.push_back(
+              {.key = variables_.back().key,
+               .what = fmt::format("two runs of the study are the same: {}", labels.dump()),
+               .expected = drawn() ? "fewer samples: whole numbers and words have only so many values"
+                                   : "values that differ",
+               .example = drawn() ? "samples = 3"
+                                  : "values = [" + example(*find_key(c, variables_.back().key)) + "]",
+               .place = values.back().place});
         tasks.push_back({std::move(c), std::move(labels)});
       }
       for (Problem& p : found)
@@ -314,6 +343,7 @@ class Setup {
 
   std::vector<std::string> quantities() const {
     if (!spec_.quantities.empty()) return spec_.quantities;
+    if (base_.sorter.enabled) return {"/recovery", "/purity", "/loss", "/air_Nm3_per_t"};
     if (!base_.splitter.enabled) return {"/bodies/0/velocity_change_z_m_s"};
     return {"/outcome", "/bodies/0/clearance_at_splitter_m", "/bodies/0/velocity_change_z_m_s"};
   }
@@ -333,6 +363,8 @@ class Setup {
     if (const auto* b = std::get_if<bool*>(&key.slot)) return **b;
     if (const auto* s = std::get_if<std::string*>(&key.slot)) return **s;
     if (const auto* v3 = std::get_if<Vec3*>(&key.slot)) return Json{(*v3)->x(), (*v3)->y(), (*v3)->z()};
+    if (const auto* f = std::get_if<VectorOrFormulas>(&key.slot); f && !*f->formulas)
+      return Json{f->value->x(), f->value->y(), f->value->z()};
     if (const auto* c = std::get_if<Choice>(&key.slot)) return c->words->at(c->get()).name;
     return value_text(key);
   }
@@ -392,17 +424,34 @@ std::vector<std::string> unknown_quantities(const TaskStore& store) {
   return told;
 }
 
+namespace {
+
+/// A key that is a vector has a column for each component.
+std::vector<std::string> columns_of(const std::string& key, const std::vector<Task>& tasks) {
+  const bool vector = !tasks.empty() && tasks.front().labels.contains(key) &&
+                      tasks.front().labels[key].is_array() && tasks.front().labels[key].size() == 3;
+  return vector ? std::vector{key + ".x", key + ".y", key + ".z"} : std::vector{key};
+}
+
+}  // namespace
+
 Json study_result(const TaskStore& store) {
   const Json& head = store.header();
   Json r{{"title", head.value("title", "")},
          {"kind", "study"},
-         {"keys", head["keys"]},
+         {"keys", Json::array()},
          {"quantities", head["quantities"]},
          {"runs", Json::array()}};
   const std::vector<TaskState> states = store.states();
+  for (const Json& key : head["keys"])
+    for (const std::string& name : columns_of(key["key"], store.tasks()))
+      r["keys"].push_back({{"key", name}, {"unit", key["unit"]}});
   for (std::size_t n = 0; n < states.size(); ++n) {
     Json run{{"task", n}, {"state", word(states[n])}};
-    for (const auto& [key, value] : store.tasks()[n].labels.items()) run[key] = value;
+    for (const auto& [key, value] : store.tasks()[n].labels.items()) {
+      const std::vector<std::string> names = columns_of(key, store.tasks());
+      for (std::size_t k = 0; k < names.size(); ++k) run[names[k]] = names.size() == 1 ? value : value.at(k);
+    }
     const Json result = states[n] == TaskState::done ? store.result(n).value("result", Json()) : Json();
     for (const std::string q : head["quantities"]) {
       const Json::json_pointer pointer(q);

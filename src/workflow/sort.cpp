@@ -33,7 +33,10 @@ Json write_results(const Case& c, const Sorter& sorter, const SorterState& state
   output::write_file(directory.file("fates.csv"), fates_table(result));
   if (!c.output.report) return result;
   Json page = result;
-  page["view"] = Json::parse(output::read_file(directory.file("view.json")));
+  page["view"] = Json::parse(output::read_file(directory.file("view.json")), nullptr, false);
+  if (page["view"].is_discarded())
+    throw InputError(fmt::format("{} is damaged\n  expected: without it, it is made anew",
+                                 directory.file("view.json").string()));
   output::write_study_report("sort", page, directory.file("report.html"));
   return result;
 }
@@ -50,7 +53,7 @@ SortEnd compute_sorter(const Case& c, const SortOptions& o, const Attendance& wh
   SorterState state = directory.read(c.classes.size());
   const auto source = make_jet_source(c, who.note);
   const Sorter sorter(c, fast_ejection(c, *source));
-  const std::int64_t cells = cells_of_sorter(c, sorter);
+  const std::int64_t cells = cells_of_sorter(c, sorter.feed());
   const auto part = [&] { return static_cast<double>(state.cells) / static_cast<double>(cells); };
   who.tell(fmt::format("{}: {:.3g} m of belt, {} thread{} -> {}{}", c.path,
                        static_cast<double>(cells) * sorter.feed().cell_length(), thread_count(),

@@ -146,10 +146,14 @@ StudyEnd compute_map(const StudyOptions& o, const Attendance& who) {
 int compute_tasks(const std::string& directory, const std::vector<std::size_t>& tasks, int threads,
                   const Attendance& who) {
   const TaskStore store = TaskStore::open(directory);
+  if (store.tasks().empty())
+    throw InputError(fmt::format("{} has no tasks: its tasks.jsonl is gone", directory),
+                     {.expected = "the command that made the study, which writes it again",
+                      .example = "ejecta study my-case.toml"});
   for (const std::size_t task : tasks)
     if (task >= store.tasks().size())
       throw InputError(fmt::format("{} has the tasks 0 to {}; there is no task {}", directory,
-                                   store.tasks().size() - 1, task));
+                                   store.tasks().size() - 1, static_cast<std::ptrdiff_t>(task)));
   int code = exit_done;
   for (const std::size_t task : tasks) {
     switch (perform_task(store, task, threads, run_for_study, who.stop, who.note)) {

@@ -150,11 +150,11 @@ TEST(AirVessel, FallsByWhatValvesTakeAndNotWhereItIsLarge) {
   c.manifold.line_diameter = 1e-6;  // brings nothing
   c.manifold.vessel = 1e3;
   auto large = pulses;
-  AirVessel(c).draw(large);
+  AirVessel(c).draw(large, 0.0, AirVessel(c).full());
   EXPECT_NEAR(large[1][0].strength, 1.0, 1e-5);
   c.manifold.vessel = 1e-3;
   auto small = pulses;
-  AirVessel(c).draw(small);
+  AirVessel(c).draw(small, 0.0, AirVessel(c).full());
   // dp/dt = -(R T/V) m', m' in proportion to p: p falls by exp(-t/T), and each opening of 8 ms sees its mean.
   const double decay = std::log(small[0][0].use / small[1][0].use);
   const double temperature = c.environment.temperature, gas = c.fluid.gas_constant;
@@ -162,6 +162,12 @@ TEST(AirVessel, FallsByWhatValvesTakeAndNotWhereItIsLarge) {
                       std::pow(2.0 / 2.4, 3.0);  // choked, kg/s per Pa
   EXPECT_NEAR(decay, 8e-3 * gas * temperature / 1e-3 * flow, 0.05 * decay);
   EXPECT_LT(small[1][0].strength, small[0][0].strength);
+  // In two parts as in one.
+  const AirVessel vessel(c);
+  const double half = vessel.after(pulses, 0.0, 8e-3, vessel.full()),
+               whole = vessel.after(pulses, 0.0, 16e-3, vessel.full());
+  EXPECT_LT(half, vessel.full());
+  EXPECT_NEAR(vessel.after(pulses, 8e-3, 16e-3, half), whole, 1e-9 * whole);
 }
 
 TEST(Feed, FromAFileIsWhatTheFileSays) {

@@ -177,4 +177,50 @@ TEST(Stretches, DoNotDependOnWhereTheyAreCut) {
   for (std::size_t n = 0; n < pieces.size(); ++n) EXPECT_EQ(pieces[n].values(), whole.cells[n].values()) << n;
 }
 
+/// A pulse longer than a cell of belt, a command long before its object: the same, wherever the belt is cut.
+TEST(Stretches, HoldAllThatLongCommandsDo) {
+  Case c = load_case(EJECTA_SOURCE_DIR "/cases/sorter/tutorial.toml");
+  c.controller.duration = 0.4;
+  c.controller.lead = 0.3;
+  const auto source = make_jet_source(c);
+  const Sorter sorter(c, fast_ejection(c, *source));
+  EXPECT_GT(sorter.halo(), 3);
+  double air = 0.0;
+  for (std::int64_t cell = 0; cell < 12; ++cell) air += sorter.sort(cell, cell + 1).cells[0].air;
+  double whole = 0.0;
+  for (const Tally& cell : sorter.sort(0, 12).cells) whole += cell.air;
+  EXPECT_NEAR(air, whole, 2e-3 * whole);
+  // Nearly all valves are open nearly all the time.
+  const double time = 12 * sorter.feed().cell_length() / c.launch.belt_speed;
+  const double all = c.manifold.valves * sorter.air_use().mass(time);
+  EXPECT_LT(whole, all);
+  EXPECT_GT(whole, 0.85 * all);
+}
+
+/// The intervals of few cells: made of draws whose truth is known.
+TEST(Intervals, CoverTheTruthOfFewPieces) {
+  for (const int pieces : {2, 4, 8, 20}) {
+    int covered = 0;
+    constexpr int kTrials = 400;
+    for (int trial = 0; trial < kTrials; ++trial) {
+      const CounterRandom random(5, static_cast<std::uint64_t>(1000 * pieces + trial));
+      ShareSums sums;
+      std::uint64_t at = 0;
+      for (int piece = 0; piece < pieces; ++piece) {
+        // Neighbours share their fate: five at a time.
+        double part = 0.0;
+        for (int group = 0; group < 20; ++group) part += 5.0 * (random.uniform(at++) < 0.3);
+        sums.add(part, 100.0, 100.0);
+      }
+      const Share s = sums.share();
+      covered += s.low <= 0.3 && 0.3 <= s.high;
+    }
+    EXPECT_GE(covered, static_cast<int>(0.925 * kTrials)) << pieces;
+  }
+  ShareSums one;
+  one.add(30.0, 100.0, 100.0);
+  EXPECT_EQ(one.share().low, 0.0);
+  EXPECT_EQ(one.share().high, 1.0);
+}
+
 }  // namespace

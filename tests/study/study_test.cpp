@@ -149,6 +149,14 @@ values = ["10 mm", "-3 mm", "20 mm"]
       refusal("[study]\ndesign = \"sobol\"\n[[study.vary]]\nkey = \"run.end_time\"\nfrom = \"1 ms\"\nto "
               "= \"9 ms\"\n"),
       HasSubstr("study.samples"));
+  EXPECT_THAT(refusal("[[study.vary]]\nkey = \"body.0.diameter\"\nvalues = [\"5 mm\", \"5.0 mm\"]\n"),
+              HasSubstr("two runs of the study are the same"));
+  EXPECT_THAT(refusal("[study]\ndesign = \"sobol\"\nsamples = 1000000\n[[study.vary]]\nkey = "
+                      "\"body.0.diameter\"\nfrom = \"5 mm\"\nto = \"9 mm\"\n"),
+              HasSubstr("a study of 1000000 runs"));
+  EXPECT_THAT(refusal("[study]\nquantities = [\"/bodies/99999999999999999999/x\"]\n[[study.vary]]\nkey = "
+                      "\"run.end_time\"\nvalues = [\"1 ms\"]\n"),
+              HasSubstr("no JSON pointer"));
   EXPECT_THAT(refusal("[study]\n"), HasSubstr("nothing varies"));
   EXPECT_THAT(refusal(""), HasSubstr("has no [study]"));
 }
@@ -165,9 +173,11 @@ TEST_F(Studies, TheTableHasEveryRunWithItsState) {
   EXPECT_EQ(result["runs"][3]["reason"], "too heavy");
   EXPECT_EQ(result["runs"][5]["state"], "waiting");
   const std::string table = study_table(result);
-  EXPECT_THAT(table, testing::StartsWith(
-                         "run,state,body.ball.diameter [m],environment.gravity [m/s2],/weight_N,reason\n"
-                         "1,done,0.01,\"[0.0,0.0,-9.81]\",0.0981,\n"));
+  EXPECT_THAT(table,
+              testing::StartsWith(
+                  "run,state,body.ball.diameter [m],environment.gravity.x [m/s2],environment.gravity.y "
+                  "[m/s2],environment.gravity.z [m/s2],/weight_N,reason\n"
+                  "1,done,0.01,0.0,0.0,-9.81,0.0981,\n"));
   EXPECT_THAT(status_line(study_status(s)), HasSubstr("4 of 6 runs done, 1 failed"));
 }
 
