@@ -10,11 +10,13 @@ import { pathNote, pathView } from "./path";
 import type { Player } from "./player";
 import { profileCharts } from "./profile_charts";
 import { replayView } from "./replay_view";
+import type { SortResult } from "./sort_data";
+import { facts as sortFacts } from "./sort_page";
 import { studyCharts, type StudyResult } from "./study_page";
 
 /** One command of a campaign as `ejecta campaign` writes it (docs/files.md). */
 interface Part {
-  kind: "run" | "jet" | "jet-sweep" | "map" | "study";
+  kind: "run" | "jet" | "jet-sweep" | "map" | "study" | "sort";
   title: string;
   figures: string;
   directory: string;
@@ -53,6 +55,7 @@ function contentOf(part: Part, runs: Run[], players: (run: Run) => Player): (Nod
     const map = part.result as unknown as MapResult;
     return [facts(map), mapView(map)];
   }
+  if (part.kind === "sort") return [sortFacts(part.result as unknown as SortResult)];
   if (part.kind === "study") return [grid(studyCharts(part.result as unknown as StudyResult))];
   if (part.kind === "jet-sweep")
     return Object.entries(part.result ?? {}).flatMap(([name, rows]) =>

@@ -91,13 +91,21 @@ function plateNote(run: Run): HTMLElement | null {
   return h("p", { class: "plate" }, `Plate: edge at x, z = ${x}, ${z} mm from the nozzle, ${how}.`);
 }
 
+/** What the run itself doubts. */
+function warnings(run: Run): HTMLElement | null {
+  const list = run.result?.["warnings"];
+  if (!Array.isArray(list) || list.length === 0) return null;
+  return h("ul", { class: "warnings", "aria-label": `Warnings of ${run.name}` },
+    ...list.map((one) => h("li", {}, unbroken(String(one)))));
+}
+
 function verdict(runs: Run[]): HTMLElement {
   const head = h("header", { class: "verdict" }, h("p", { class: "title" }, titleOf(runs)));
   if (runs.length === 1) head.append(h("h1", { id: "verdict" }, unbroken(runs[0]!.verdict)));
   else head.append(h("h1", {}, `${runs.length} runs compared`),
     h("ul", { class: "verdicts" }, ...runs.map((run, r) => h("li", {},
-      h("span", { class: r > 0 ? "swatch dashed ink" : "swatch ink" }), h("strong", {}, `${run.name}: `), unbroken(run.verdict), changes(run)))));
-  if (runs.length === 1) for (const note of [changes(runs[0]!), plateNote(runs[0]!)]) if (note) head.append(note);
+      h("span", { class: r > 0 ? "swatch dashed ink" : "swatch ink" }), h("strong", {}, `${run.name}: `), unbroken(run.verdict), changes(run), warnings(run)))));
+  if (runs.length === 1) for (const note of [warnings(runs[0]!), changes(runs[0]!), plateNote(runs[0]!)]) if (note) head.append(note);
   const cards = bodyCards(runs);
   if (cards) head.append(cards);
   return head;

@@ -46,7 +46,7 @@ enum class GrainDragLaw { none, stokes, schiller_naumann, di_felice, rong, koch_
 enum class GrainExchange { two_way, one_way };
 enum class StudyDesign { grid, list, latin_hypercube, sobol };
 enum class MapLying { given, turned, any };
-enum class CampaignKind { run, jet, jet_sweep, map, study };
+enum class CampaignKind { run, jet, jet_sweep, map, study, sort };
 
 /// [run]
 struct RunSpec {

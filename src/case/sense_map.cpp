@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <tuple>
 
 #include "base/units.hpp"
 #include "case/extent.hpp"
@@ -63,10 +64,30 @@ void check_window(const Case& c, Findings& found) {
     found.error("map.along", fmt::format("the window reaches to the plate, {} behind the jet", mm(plate)),
                 "places between the belt and the plate",
                 fmt::format("along = [\"{}\", \"{}\"]", mm(-0.5 * plate), mm(0.5 * plate)));
+  const Vec3 size = half_extent(c.bodies[mapped_body(c)]);
+  for (const auto& [key, range, error] : {std::tuple{"along", m.along, m.arrival_error[0]},
+                                          std::tuple{"across", m.across, m.arrival_error[1]}}) {
+    const double width = range[1] - range[0];
+    if (width < 0.2 * size.maxCoeff())
+      found.error(std::string("map.") + key,
+                  fmt::format("the window is {} wide, a small part of the body", mm(width)),
+                  "a window in which the body is ejected at some places and not at others",
+                  std::string(key) + " = [\"-18 mm\", \"18 mm\"]");
+    if (error > width)
+      found.error("map.arrival_error",
+                  fmt::format("bodies come {} beside where they are expected, the window is {} wide",
+                              mm(error), mm(width)),
+                  "less than the window", "arrival_error = [\"1 mm\", \"1 mm\"]");
+  }
   const auto box = grid_box(c);
   if (!box || c.flow.solver == FlowSolver::none) return;
-  const Vec3 half = half_extent(c.bodies[mapped_body(c)]);
+  const Vec3 half = std::max(m.size_factor[0], m.size_factor[1]) * size;
   const double y = c.jet.nozzle.y(), right = box->high.y() - y, left = y - box->low.y();
+  if (half.y() >= std::min(left, right))
+    return found.error(
+        "map.size_factor",
+        fmt::format("the largest body of the class, {} across, does not fit the box", mm(2.0 * half.y())),
+        "sizes that fit, or a wider box", "size_factor = [0.8, 1.2]");
   if (m.across[1] + half.y() > right || m.across[0] - half.y() < -left)
     found.error("map.across",
                 fmt::format("at its ends the body leaves the box, which is from {} to {} beside the jet",

@@ -116,11 +116,9 @@ const std::vector<Word>& words(StudyDesign) {
 }
 
 const std::vector<Word>& words(CampaignKind) {
-  static const std::vector<Word> list{{"run", "`ejecta run`"},
-                                      {"jet", "`ejecta jet`"},
-                                      {"jet-sweep", "`ejecta jet --sweep`"},
-                                      {"map", "`ejecta map`"},
-                                      {"study", "`ejecta study`"}};
+  static const std::vector<Word> list{
+      {"run", "`ejecta run`"}, {"jet", "`ejecta jet`"},     {"jet-sweep", "`ejecta jet --sweep`"},
+      {"map", "`ejecta map`"}, {"study", "`ejecta study`"}, {"sort", "`ejecta sort`"}};
   return list;
 }
 

@@ -31,6 +31,9 @@ class CampaignPart {
     title_ = !spec_.title.empty() ? spec_.title : !c.run.title.empty() ? c.run.title : c.path;
     if (spec_.kind == CampaignKind::map && !c.map.enabled) refuse(number, "has no [map]");
     if (spec_.kind == CampaignKind::study && !c.study.enabled) refuse(number, "has no [study]");
+    if (spec_.kind == CampaignKind::sort && !c.sorter.enabled) refuse(number, "has no [sorter]");
+    if (spec_.kind == CampaignKind::run && c.sorter.enabled)
+      refuse(number, "is a whole sorter: kind = \"sort\"");
     if (c.campaign.enabled) refuse(number, "is a campaign itself");
     directory_ = out / fmt::format("{:02}-{}", number + 1, fs::path(file_).stem().string());
   }

@@ -97,6 +97,25 @@ class Campaign(unittest.TestCase):
         self.ejecta("campaign", "balls.toml")
         self.assertEqual(self.times(), before)
 
+    def test_a_sorter_is_a_part_and_can_be_studied(self):
+        tutorial = pathlib.Path(__file__).resolve().parents[2] / "cases/sorter/tutorial.toml"
+        sorter = f'extends = "{tutorial}"\n[sorter]\nparticles = 200\n'
+        loads = '[study]\n[[study.vary]]\nkey = "sorter.throughput"\nvalues = ["4 t/h", "16 t/h"]\n'
+        (self.folder / "sorter.toml").write_text(sorter)
+        (self.folder / "loads.toml").write_text(sorter + loads)
+        (self.folder / "machines.toml").write_text(
+            '[campaign]\n[[campaign.part]]\nkind = "sort"\ncase = "sorter.toml"\n'
+            '[[campaign.part]]\nkind = "study"\ncase = "loads.toml"\n')
+        self.ejecta("campaign", "machines.toml")
+        one, many = json.loads((self.folder / "machines.campaign/result.json").read_text())["parts"]
+        self.assertIn("recovery", one["summary"])
+        few, more = many["result"]["runs"]
+        self.assertGreater(few["/purity"], more["/purity"])
+        self.assertIn("purity", (self.folder / "machines.campaign/report.html").read_text())
+        self.assertIn("ejecta sort", self.ejecta("run", "sorter.toml", code=2))
+        (self.folder / "wrong.toml").write_text('[campaign]\n[[campaign.part]]\ncase = "sorter.toml"\n')
+        self.assertIn("is a whole sorter", self.ejecta("campaign", "wrong.toml", code=2))
+
     def test_stopped_it_goes_on(self):
         (self.folder / "fall.toml").write_text(FALL.format(end="30 s"))
         work = subprocess.Popen([EJECTA, "campaign", "balls.toml", "--quiet"], cwd=self.folder, stderr=subprocess.DEVNULL)
