@@ -96,7 +96,7 @@ function warnings(run: Run): HTMLElement | null {
   const list = run.result?.["warnings"];
   if (!Array.isArray(list) || list.length === 0) return null;
   return h("ul", { class: "warnings", "aria-label": `Warnings of ${run.name}` },
-    ...list.map((one) => h("li", {}, unbroken(String(one)))));
+    ...list.map((one) => h("li", {}, h("strong", {}, "Warning: "), unbroken(String(one)))));
 }
 
 function verdict(runs: Run[]): HTMLElement {

@@ -61,7 +61,7 @@ function scatter(study: StudyResult, key: StudyResult["keys"][number], quantity:
 
 function effects(study: StudyResult): HTMLElement | null {
   const numeric = study.quantities.filter((q) => study.runs.some((r) => isNumber(r[q])));
-  const keys = study.keys.filter((k) => study.runs.some((r) => isNumber(r[k.key])));
+  const keys = study.keys.filter((k) => new Set(study.runs.map((r) => r[k.key]).filter(isNumber)).size > 1);
   if (numeric.length === 0 || keys.length === 0) return null;
   const cell = (q: string, key: string): string => {
     const y = means(study.runs, key, q).y;
@@ -81,6 +81,8 @@ function extremes(study: StudyResult): HTMLElement | null {
   const items = study.quantities.flatMap((q) => {
     const known = study.runs.filter((r) => isNumber(r[q])).sort((a, b) => (a[q] as number) - (b[q] as number));
     if (known.length < 2) return [];
+    if (known[0]![q] === known.at(-1)![q])
+      return [h("li", {}, h("p", { class: "what" }, h("code", {}, q)), h("p", {}, `the same in every run: ${short(known[0]![q] as number)}`))];
     return [h("li", {}, h("p", { class: "what" }, h("code", {}, q)),
       h("p", {}, `greatest ${short(known.at(-1)![q] as number)}: `, name(known.at(-1)!), `, least ${short(known[0]![q] as number)}: `, name(known[0]!)))];
   });

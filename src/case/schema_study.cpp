@@ -17,7 +17,8 @@ std::vector<Key> keys(StudySpec& s) {
           {.name = "quantities",
            .slot = &s.quantities,
            .help = "JSON pointers into result.json of a run: the columns of the table of results (SI units)",
-           .unset = "outcome, clearance and gain of velocity of the first body",
+           .unset = "outcome, clearance and gain of velocity of the first body; of a sorter recovery, "
+                    "purity, loss and air",
            .example = R"(["/outcome", "/bodies/0/velocity_change_z_m_s"])"},
           {"keep_runs", &s.keep_runs, none, anything,
            "Keep the directory of each run, with its report; else only its result.json", ""}};

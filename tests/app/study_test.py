@@ -72,12 +72,12 @@ class Study(unittest.TestCase):
         self.ejecta("study", self.case(keep="true"), "--out", "s")
         result = json.loads(self.result("s"))
         self.assertEqual([run["state"] for run in result["runs"]], ["done"] * 12)
-        self.assertEqual(result["runs"][11]["environment.gravity"], [0, 0, -20])
+        self.assertEqual(result["runs"][11]["environment.gravity.z"], -20)
         speeds = [run["/bodies/0/final_velocity_m_s/2"] for run in result["runs"]]
         self.assertTrue(all(isinstance(v, float) for v in speeds))
         table = (self.folder / "s/runs.csv").read_text().splitlines()
         self.assertEqual(len(table), 13)
-        self.assertTrue(table[0].startswith("run,state,environment.gravity [m/s2],"))
+        self.assertTrue(table[0].startswith("run,state,environment.gravity.x [m/s2],"))
         run = self.folder / "s" / result["runs"][3]["directory"]
         self.assertTrue((run / "result.json").exists())
         self.assertIn("12 of 12 runs done", self.ejecta("study", "status", "s"))
