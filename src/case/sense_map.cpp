@@ -10,6 +10,7 @@
 #include "case/load.hpp"
 #include "case/map_grid.hpp"
 #include "case/outline_file.hpp"
+#include "case/required_file.hpp"
 #include "case/symmetry.hpp"
 
 /// [map]: whether there is something to map, and a window in which it can be.
