@@ -80,7 +80,8 @@ std::vector<Key> keys(MapSpec& s) {
        .dimension = length,
        .bounds = not_negative,
        .help = "Steps along and across of a regular grid around the jet's axis: a fine run at each of its "
-               "places in the window, the margin linear between them, nothing chosen. Max_runs bounds it",
+               "places in the window, the margin linear between them, nothing chosen; as many as max_runs at "
+               "most",
        .source = "the paper: 3 mm, 0.5 mm",
        .unset = "places are chosen where they tell most",
        .example = R"(["3 mm", "2.5 mm"])"},

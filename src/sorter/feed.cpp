@@ -28,8 +28,19 @@ constexpr double kLongestRun = 10 * 86400.0;  ///< s, of the belt: even empty ce
 
 double belt_carries(const Case& c) { return c.launch.belt_speed * c.sorter.belt_width; }  ///< m2/s
 
-/// m, of the strip; per_mass: particles a kg; `largest`: m.
-double cell_length(const Case& c, double largest, double per_mass, double tray) {
+/// Speed of the tray of a feeder over the belt's; of what lies on the belt 1.
+double tray_of(const Case& c) {
+  return c.feed.presentation == Presentation::feeder ? c.feed.lip_speed / c.launch.belt_speed : 1.0;
+}
+
+/// m, of a cell of the strip.
+double cell_length_of(const Case& c, const std::vector<ParticleClass>& classes) {
+  double largest = 0.0, per_mass = 0.0;  // m; particles a kg
+  for (const ParticleClass& k : classes) {
+    largest = std::max(largest, k.size_at(1.0 - 1e-6) / k.spec().elongation);
+    per_mass += k.spec().share / k.mean_mass();
+  }
+  const double tray = tray_of(c);
   double length = std::max(kCell, kCellOverSize * largest / std::min(tray, 1.0));
   const double per_metre = c.sorter.throughput * per_mass / c.launch.belt_speed;
   if (c.feed.presentation == Presentation::monolayer && per_metre > 0.0)
@@ -141,22 +152,15 @@ CsvTable read_log(const Case& c, std::vector<Problem>& problems) {
 }  // namespace
 
 Feed::Feed(const Case& c) : sorter_(c.sorter), feed_(c.feed) {
-  double largest = 0.0;
-  for (std::size_t k = 0; k < c.classes.size(); ++k) {
+  for (std::size_t k = 0; k < c.classes.size(); ++k)
     classes_.emplace_back(c.classes[k], folder_of(c), c.sorter.seed + 7919 * static_cast<std::int64_t>(k));
-    largest = std::max(largest, classes_[k].size_at(1.0 - 1e-6) / c.classes[k].elongation);
-  }
-  const bool feeder = feed_.presentation == Presentation::feeder;
-  const double tray = feeder ? feed_.lip_speed / c.launch.belt_speed : 1.0;
-  double per_mass = 0.0;
-  for (const ParticleClass& k : classes_) per_mass += k.spec().share / k.mean_mass();
-  cell_length_ = ejecta::cell_length(c, largest, per_mass, tray);
-  laid_length_ = tray * cell_length_;
+  cell_length_ = cell_length_of(c, classes_);
+  laid_length_ = tray_of(c) * cell_length_;
   for (const ParticleClass& k : classes_)
     mean_count_.push_back(c.sorter.throughput * k.spec().share / k.mean_mass() / c.launch.belt_speed *
                           cell_length_);
   if (feed_.presentation == Presentation::file) read_file(c);
-  if (feeder)
+  if (feed_.presentation == Presentation::feeder)
     feeder_ = std::make_unique<FeederStream>(c, classes_, cell_length_,
                                              [this](std::int64_t batch) { return laid(batch, batch + 1); });
 }
@@ -359,8 +363,7 @@ std::vector<Problem> check_feed(const Case& c) {
   const double belt = belt_carries(c), cover = c.sorter.throughput * area_per_mass / belt;
   double most = c.feed.presentation == Presentation::independent ? 1.0 : kMostCover;
   if (c.feed.presentation == Presentation::monolayer) {
-    const double cell = cell_length(c, 0.0, per_mass, 1.0),
-                 count = c.sorter.throughput * per_mass * cell / c.launch.belt_speed;
+    const double count = c.sorter.throughput * per_mass * cell_length_of(c, classes) / c.launch.belt_speed;
     most = std::min(most, kFullestCell / (1.0 + kDeviationsOfFullest / std::sqrt(std::max(count, 1.0))));
   }
   if (cover > most)

@@ -354,11 +354,6 @@ Estimate estimate(std::span<const Measures> all, double Measures::*what, double 
   return e;
 }
 
-RasterValues whole_plane(const Raster& r, const Eigen::VectorXd& values, bool symmetric) {
-  const RasterValues half{r, {values.data(), values.data() + values.size()}};
-  return symmetric ? with_mirror_image(half) : half;
-}
-
 /// The middles of seven equal parts of the normal distribution, scaled to its variance.
 std::array<double, 7> normal_steps(double deviation) {
   return {-1.6076 * deviation, -0.8685 * deviation, -0.4017 * deviation, 0.0,
@@ -516,14 +511,14 @@ Outline OutlineFinder::outline() const {
   out.length_behind = estimate(all, &Measures::behind, 1.0);
 
   const Eigen::VectorXd deviation = (square - mean.cwiseAbs2()).cwiseMax(0.0).cwiseSqrt();
-  const auto outlines = [&](const Eigen::VectorXd& values) {
-    const RasterValues all = whole_plane(raster, values, settings_.symmetric);
-    return positive_outlines(all.raster, all.values);
+  const auto whole = [&](const Eigen::VectorXd& values) {
+    return whole_plane({raster, {values.data(), values.data() + values.size()}}, settings_.symmetric);
   };
-  out.outline = outlines(mean);
-  out.sure = outlines(mean - kQuantile * deviation);
-  out.possible = outlines(mean + kQuantile * deviation);
-  const RasterValues expected = whole_plane(raster, mean, settings_.symmetric);
+  const RasterValues expected = whole(mean), least = whole(mean - kQuantile * deviation),
+                     most = whole(mean + kQuantile * deviation);
+  out.outline = positive_outlines(expected.raster, expected.values);
+  out.sure = positive_outlines(least.raster, least.values);
+  out.possible = positive_outlines(most.raster, most.values);
   out.reaches_sides = reaches_sides(expected.raster, expected.values);
   for (const Point2& node : nodes_of(raster)) {
     double nearest = std::numeric_limits<double>::infinity();
@@ -565,8 +560,7 @@ std::optional<RasterValues> OutlineFinder::chance_map(const std::array<double, 2
   std::vector<double> chance(static_cast<std::size_t>(raster.nodes()), 0.0);
   for (std::size_t n = 0; n < each.size(); ++n)
     chance[n / together] += each[n] / static_cast<double>(together);
-  RasterValues half{raster, std::move(chance)};
-  return settings_.symmetric ? with_mirror_image(half) : half;
+  return whole_plane({raster, std::move(chance)}, settings_.symmetric);
 }
 
 /// A run that stands against all others also bends the process that judges it: the judgement is that of the

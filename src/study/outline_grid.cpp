@@ -88,7 +88,7 @@ RasterValues OutlineGrid::margins() const {
     if (!std::isfinite(nearest)) throw InputError("a map without runs has no outline");
     all.values.push_back(margin);
   }
-  return settings_.symmetric ? with_mirror_image(all) : all;
+  return whole_plane(std::move(all), settings_.symmetric);
 }
 
 Outline OutlineGrid::outline() const {

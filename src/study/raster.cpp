@@ -57,14 +57,15 @@ void trace(std::map<Edge, Step>& steps, const std::array<Corner, 3>& t) {
 
 }  // namespace
 
-RasterValues with_mirror_image(const RasterValues& upper) {
-  const Raster& r = upper.raster;
+RasterValues whole_plane(RasterValues values, bool symmetric) {
+  if (!symmetric) return values;
+  const Raster& r = values.raster;
   RasterValues whole{r, {}};
   whole.raster.cells_y = 2 * r.cells_y;
   whole.raster.y0 = -r.dy * r.cells_y;
   for (int j = -r.cells_y; j <= r.cells_y; ++j)
     for (int i = 0; i <= r.cells_x; ++i)
-      whole.values.push_back(upper.values[static_cast<std::size_t>(r.node(i, std::abs(j)))]);
+      whole.values.push_back(values.values[static_cast<std::size_t>(r.node(i, std::abs(j)))]);
   return whole;
 }
 

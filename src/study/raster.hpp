@@ -30,8 +30,9 @@ struct RasterValues {
   std::vector<double> values;  ///< at the nodes
 };
 
-/// Of the half above y = 0, whose lowest nodes lie there: with what is the same below.
-RasterValues with_mirror_image(const RasterValues& upper);
+/// Of the half above y = 0, whose lowest nodes lie there, where the values are symmetric: with what is the
+/// same below. Otherwise as they are.
+RasterValues whole_plane(RasterValues values, bool symmetric);
 
 /// Area where `values` at the nodes are positive, m2.
 double positive_area(const Raster& raster, std::span<const double> values);
