@@ -464,6 +464,7 @@ struct SorterSpec {
   double belt_width = 0.55;  ///< m
   std::int64_t seed = 1;     ///< of all that chance decides
   int shown = 300;           ///< particles in the report's view
+  bool encounters = true;    ///< particles push and shelter each other in the air
 };
 
 /// [sorter.feed]: how particles lie on the belt

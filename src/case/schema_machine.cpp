@@ -22,7 +22,11 @@ std::vector<Key> keys(SorterSpec& s) {
            ""},
           decisive(Key{"belt_width", &s.belt_width, length, positive, "Width of the belt", "paper 2.1"}),
           {"seed", &s.seed, none, not_negative, "Another number gives another feed", ""},
-          {"shown", &s.shown, none, {0, 5000}, "Particles that the report shows moving", ""}};
+          {"shown", &s.shown, none, {0, 5000}, "Particles that the report shows moving", ""},
+          {"encounters", &s.encounters, none, anything,
+           "In the air particles push each other and take each other's air; not where they may lie in each "
+           "other (presentation = \"independent\")",
+           ""}};
 }
 
 std::vector<Key> keys(FeedSpec& s) {

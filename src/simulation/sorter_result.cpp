@@ -96,14 +96,16 @@ SorterState sorter_state(const Json& json, std::size_t kinds) {
 
 Json sorter_result(const Case& c, const Sorter& sorter, const SorterState& state) {
   const Tally& total = state.products.total;
-  double particles = 0.0, mass = 0.0, area = 0.0, slipping = 0.0, late_squares = 0.0, ejected_mass = 0.0,
-         kept_mass = 0.0, ejected = 0.0;
+  double particles = 0.0, mass = 0.0, area = 0.0, slipping = 0.0, late_squares = 0.0, met = 0.0,
+         in_another = 0.0, ejected_mass = 0.0, kept_mass = 0.0, ejected = 0.0;
   for (std::size_t k = 0; k < total.kinds.size(); ++k) {
     particles += total.number(k);
     mass += total.mass(k);
     area += total.kinds[k].area;
     slipping += total.kinds[k].slipping;
     late_squares += total.kinds[k].late_squares;
+    met += total.kinds[k].met;
+    in_another += total.kinds[k].in_another;
     for (std::size_t f = 0; f < kFates; ++f) {
       const bool out = goes_to_ejects(static_cast<Fate>(f));
       (out ? ejected_mass : kept_mass) += total.kinds[k].mass[f];
@@ -122,6 +124,8 @@ Json sorter_result(const Case& c, const Sorter& sorter, const SorterState& state
          {"cover", over(area, total.length * c.sorter.belt_width)}};
   r["slipping_at_camera"] = over(slipping, particles);
   r["arrival_error_s"] = std::sqrt(over(late_squares, particles));
+  r["met_in_air"] = over(met, particles);
+  r["lay_in_each_other"] = in_another;
   for (std::size_t n = 0; n < ratio_names.size(); ++n)
     put_share(r, ratio_names[n], state.products.sums[n].share());
   r["products"] = {{"ejected", {{"particles", ejected}, {"mass_kg", ejected_mass}}},
@@ -167,6 +171,8 @@ std::string fates_table(const Json& result) {
   return output::csv_text(table);
 }
 
+constexpr double kPathStep = 2e-3;  ///< s, of the paths in the report
+
 Json sorter_view(const Case& c, const SortedStretch& stretch) {
   const auto rounded = [](double metres) { return std::round(metres * 1e5) / 1e5; };
   Json view{{"belt_speed_m_s", c.launch.belt_speed}, {"belt_width_m", c.sorter.belt_width},
@@ -186,17 +192,21 @@ Json sorter_view(const Case& c, const SortedStretch& stretch) {
     Json outline = Json::array(), path = Json::array();
     for (const Vec3& v : outline_of(s.particle))
       outline.push_back({rounded(s.particle.x - v.x()), rounded(v.y() - s.particle.y)});  // along the motion
-    for (const Vec3& v : s.path) path.push_back({rounded(v.x()), rounded(v.y()), rounded(v.z())});
+    if (!s.track.states.empty())
+      for (double time = s.track.from; time < s.track.passes + kPathStep; time += kPathStep) {
+        const Vec3 v = s.track.at(time).position;
+        path.push_back({rounded(v.x()), rounded(v.y()), rounded(v.z())});
+      }
     view["particles"].push_back({{"kind", s.particle.kind},
                                  {"x", rounded(s.particle.x)},
                                  {"y", rounded(s.particle.y)},
                                  {"fate", word(s.fate)},
                                  {"outline", outline},
-                                 {"path_from_s", s.path_from},
+                                 {"path_from_s", s.track.from},
                                  {"path", path}});
     last = std::max(last, s.particle.x);
   }
-  view["path_step_s"] = FastFlight::kPathStep;
+  view["path_step_s"] = kPathStep;
   view["length_m"] = last;
   view["objects"] = Json::array();
   for (const SeenObject& o : stretch.objects)

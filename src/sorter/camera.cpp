@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numeric>
 
+#include "base/joined_sets.hpp"
 #include "base/random.hpp"
 
 namespace ejecta {
@@ -43,26 +43,6 @@ void rasterise(const std::vector<Vec3>& outline, int particle, double pixel, dou
   }
 }
 
-/// Which runs belong together: each points towards the root of its set.
-class Sets {
- public:
-  explicit Sets(std::size_t count) : parent_(count) {
-    std::iota(parent_.begin(), parent_.end(), std::size_t{0});
-  }
-  std::size_t root(std::size_t n) {
-    while (parent_[n] != n) n = parent_[n] = parent_[parent_[n]];
-    return n;
-  }
-  void join(std::size_t a, std::size_t b) {
-    a = root(a);
-    b = root(b);
-    parent_[std::max(a, b)] = std::min(a, b);
-  }
-
- private:
-  std::vector<std::size_t> parent_;
-};
-
 }  // namespace
 
 Camera::Camera(const Case& c)
@@ -92,7 +72,7 @@ std::vector<SeenObject> Camera::look(std::span<const FeedParticle> particles) co
   });
   // Joined are pixels that touch, and those with less than the gap between them.
   const int reach = 1 + static_cast<int>(std::floor(spec_.gap / pixel_));
-  Sets sets(runs.size());
+  JoinedSets sets(runs.size());
   std::size_t window = 0;  // the first run on a line within reach
   for (std::size_t n = 0; n < runs.size(); ++n) {
     while (runs[window].line < runs[n].line - reach) ++window;
@@ -102,7 +82,7 @@ std::vector<SeenObject> Camera::look(std::span<const FeedParticle> particles) co
   std::vector<SeenObject> objects;
   std::map<std::size_t, std::size_t> place;  // of the object of a root
   for (std::size_t n = 0; n < runs.size(); ++n) {
-    const auto [at, fresh] = place.try_emplace(sets.root(n), objects.size());
+    const auto [at, fresh] = place.try_emplace(sets.of(n), objects.size());
     if (fresh) {
       objects.emplace_back();
       objects.back().x_low = objects.back().y_low = 1e300;

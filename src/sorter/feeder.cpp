@@ -8,7 +8,7 @@
 #include <numeric>
 
 #include "base/error.hpp"
-#include "base/parallel.hpp"
+#include "base/thread_budget.hpp"
 #include "dem/particles.hpp"
 #include "dem/rotation.hpp"
 #include "dem/time_step.hpp"
@@ -21,22 +21,9 @@ constexpr double kStill = 2e-3;       ///< m/s: what moves less on the belt, for
 constexpr double kStillFor = 20e-3;   ///< s
 constexpr double kRideOver = 1.5;     ///< particles ride this many of the largest radius before the lip
 constexpr double kTrayThick = 10e-3;  ///< m
-/// Sub-steps are this part of the contact time of the size of which only so many are smaller. Longer than a
-/// run's tenth: an impact errs by 2 % of its energy, of which the belt takes nine tenths anyway.
-constexpr double kStepFraction = 0.25, kSmallest = 1e-3;
+constexpr double kSmallest =
+    1e-3;  ///< of all: sub-steps are those of the size of which only so many are smaller
 constexpr double kFaster = 1.5;  ///< than any should be
-
-/// Loops of a scene run on the thread that computes it: scenes are computed side by side.
-class OneThread {
- public:
-  OneThread() : threads_(thread_count()) { set_thread_count(1); }
-  ~OneThread() { set_thread_count(threads_); }
-  OneThread(const OneThread&) = delete;
-  OneThread& operator=(const OneThread&) = delete;
-
- private:
-  int threads_;
-};
 
 Wall plane(const Vec3& normal, double offset, const Vec3& velocity) {
   Wall w;
@@ -44,15 +31,6 @@ Wall plane(const Vec3& normal, double offset, const Vec3& velocity) {
   w.offset = offset;
   w.velocity = velocity;
   return w;
-}
-
-/// A body of the class's material at the place of a particle on the tray.
-Body body_of(const FeedParticle& p, const ParticleClass& kind) {
-  Body b{.name = fmt::format("{} {}", kind.spec().name, p.id), .shape = kind.shape_of(*p.prototype, p.scale)};
-  b.mass = p.mass;
-  b.inertia = kind.spec().density * std::pow(p.scale, 5) * p.prototype->inertia;
-  b.orientation = orientation_of(p);
-  return b;
 }
 
 }  // namespace
@@ -76,13 +54,13 @@ Feeder::Feeder(const Case& c, const std::vector<ParticleClass>& classes)
       smallest.prototype = &p;
       smallest.scale = k.size_at(kSmallest) / p.size;
       smallest.mass = k.mass_of(p, smallest.scale);
-      time = std::min(time, contact_time(body_of(smallest, k), materials, impact));
+      time = std::min(time, contact_time(body_of(smallest, k.spec()), materials, impact));
       radius = std::max(radius, p.shape.bounding_radius() * k.size_at(1.0 - 1e-6) / p.size);
       thinnest = std::min(thinnest, smallest.scale * p.shape.smallest_feature());
     }
   largest_ = radius;
   const bool asked = c.given.contains("contact.time_step_fraction");
-  step_ = c.contact.time_step.value_or((asked ? c.contact.time_step_fraction : kStepFraction) * time);
+  step_ = c.contact.time_step.value_or((asked ? c.contact.time_step_fraction : kSorterStepFraction) * time);
   // Fallen, two of them spun by the belt at its speed: by what dem would else divide the steps of all.
   step_ = std::min(step_, passing_time(thinnest, 2.0 * kFaster * (impact + v)));
   // Whoever slides has of the belt's friction what the belt bears of it: the fall's momentum at once, then
@@ -122,7 +100,7 @@ struct Feeder::Scene {
 
 std::vector<FeedParticle> Feeder::run(std::vector<FeedParticle> tray, std::size_t wanted) const {
   if (wanted == 0) return tray;
-  const OneThread one;
+  const ThreadBudget one(1);  // scenes are computed side by side
   const Materials materials(case_);
   const double v = case_.launch.belt_speed, u = case_.feed.lip_speed, half = 0.5 * case_.sorter.belt_width,
                ride = kRideOver * largest_, drop = case_.launch.drop_distance;
@@ -180,7 +158,7 @@ std::vector<FeedParticle> Feeder::run(std::vector<FeedParticle> tray, std::size_
     const double time = static_cast<double>(look) * kLook;
     for (; next < order.size() && enters(order[next]) <= time; ++next) {
       const FeedParticle& p = tray[order[next]];
-      Body b = body_of(p, (*classes_)[static_cast<std::size_t>(p.kind)]);
+      Body b = body_of(p, (*classes_)[static_cast<std::size_t>(p.kind)].spec());
       const Vec3 down = b.orientation.conjugate() * Vec3(0, 0, -1);
       b.position = Vec3(u * time - p.x, p.y, case_.feed.lip_height + down.dot(b.shape.support(down)));
       b.velocity = Vec3(u, 0, 0);

@@ -13,18 +13,52 @@
 namespace ejecta {
 namespace {
 
-constexpr double kAirStep = 4e-4;  ///< s, of the flight through air
+constexpr double kAirStep = Track::kStep;  ///< s, of the flight through air
 
 constexpr std::size_t kMostBlows = 64;  ///< that a body meets at once
 
 double bounding_radius(const FeedParticle& p) { return p.scale * p.prototype->shape.bounding_radius(); }
 
+/// Changes velocity and spin as the load does in dt.
+void kick(BodyState& s, const FeedParticle& p, const Load& load, double dt) {
+  s.velocity += dt / p.mass * load.force;
+  const double density = p.mass / (p.prototype->volume * std::pow(p.scale, 3));
+  const Vec3 inertia = density * std::pow(p.scale, 5) * p.prototype->inertia;
+  const Mat3 turn = s.orientation.toRotationMatrix();
+  const Vec3 spin_body = turn.transpose() * s.spin, torque_body = turn.transpose() * load.torque;
+  const Vec3 momentum_body = inertia.cwiseProduct(spin_body);
+  s.spin += dt * (turn * (torque_body - spin_body.cross(momentum_body)).cwiseQuotient(inertia));
+}
+
+constexpr double kNever = 1e300;     ///< s
+constexpr double kLeastGain = 1e-3;  ///< m/s: less is no touch
+
 }  // namespace
 
-struct FastFlight::State {
-  Vec3 position{0, 0, 0}, velocity{0, 0, 0}, spin{0, 0, 0};
-  Quat orientation = Quat::Identity();
-};
+void BodyState::drift(double dt) {
+  position += dt * velocity;
+  turn(orientation, dt * spin);
+}
+
+BodyState BodyState::after(double dt, const Vec3& gravity) const {
+  BodyState s = *this;
+  s.position += dt * velocity + 0.5 * dt * dt * gravity;
+  s.velocity += dt * gravity;
+  turn(s.orientation, dt * spin);
+  return s;
+}
+
+BodyState Track::at(double time) const {
+  if (states.empty() || time >= until()) return end.after(time - until(), gravity);
+  if (time <= from) return states.front().after(time - from, gravity);
+  const auto n = std::min(static_cast<std::size_t>((time - from) / kStep), states.size() - 1);
+  const BodyState &a = states[n], &b = n + 1 < states.size() ? states[n + 1] : end;
+  const double share = (time - from) / kStep - static_cast<double>(n);
+  return {.position = a.position + share * (b.position - a.position),
+          .velocity = a.velocity + share * (b.velocity - a.velocity),
+          .spin = a.spin + share * (b.spin - a.spin),
+          .orientation = a.orientation.slerp(share, b.orientation)};
+}
 
 FastFlight::FastFlight(const Case& c, const JetField& field, const AirCoefficients& coefficients)
     : field_(field), coefficients_(coefficients), launch_(c.launch), gravity_(c.environment.gravity.z()) {
@@ -37,12 +71,12 @@ FastFlight::FastFlight(const Case& c, const JetField& field, const AirCoefficien
   edge_z_ = splitter.edge().z();
 }
 
-bool FastFlight::may_meet(const FeedParticle& p, double at, double y, const Blow& blow) const {
-  const double away = reach(p);
-  if (std::abs(y - blow.y) > away) return false;
+bool FastFlight::may_meet(const Flyer& f, const Blow& blow) const {
+  const double away = reach(*f.particle);
+  if (std::abs(f.y - blow.y) > away) return false;
   const double passes = away / launch_.belt_speed;
-  return blow.pulse.from < at + passes &&
-         blow.pulse.from + field_.still_from(2.0 * height_, blow.pulse.to - blow.pulse.from) > at - passes;
+  return blow.pulse.from < f.at + passes &&
+         blow.pulse.from + field_.still_from(2.0 * height_, blow.pulse.to - blow.pulse.from) > f.at - passes;
 }
 
 double FastFlight::widening(const FeedParticle& p) const {
@@ -53,24 +87,25 @@ double FastFlight::reach(const FeedParticle& p) const {
   return bounding_radius(p) + widening(p) * field_.reach(height_);
 }
 
-void FastFlight::push(State& s, const FeedParticle& p, std::span<const Blow> blows, double widening,
-                      double time, double dt) const {
+Load FastFlight::load(const FeedParticle& p, const BodyState& s, const Begin& begin, double time,
+                      const Hidden& hidden) const {
   const Prototype& proto = *p.prototype;
-  const Mat3 turn = s.orientation.toRotationMatrix();
-  const double whole_coefficient = coefficients_.of(p), front = coefficients_.front * whole_coefficient,
-               back = whole_coefficient - front;
-  const double area_scale = p.scale * p.scale;
-  Vec3 force = Vec3::Zero(), torque = Vec3::Zero();
-  const double radius = bounding_radius(p), far = radius + widening * field_.reach(s.position.z() + radius);
+  const double radius = bounding_radius(p),
+               far = radius + begin.widening * field_.reach(s.position.z() + radius);
   std::array<const Blow*, kMostBlows> near{};
   std::size_t count = 0;
-  for (const Blow& blow : blows) {
+  for (const Blow& blow : begin.blows) {
     const double since = time - blow.pulse.from, dy = s.position.y() - blow.y;
     if (since > 0.0 && since < field_.still_from(s.position.z() + radius, blow.pulse.to - blow.pulse.from) &&
         s.position.x() * s.position.x() + dy * dy < far * far && count < kMostBlows)
       near[count++] = &blow;
   }
-  if (count == 0) return;
+  Load load;
+  if (count == 0) return load;
+  const Mat3 turn = s.orientation.toRotationMatrix();
+  const double whole_coefficient = coefficients_.of(p), front = coefficients_.front * whole_coefficient,
+               back = whole_coefficient - front;
+  const double area_scale = p.scale * p.scale;
   for (const Prototype::Piece& piece : proto.surface) {
     const Vec3 arm = p.scale * (turn * piece.point), at = s.position + arm;
     Vec3 momentum = Vec3::Zero();  // of all jets: it adds up where they meet (Reichardt 1942)
@@ -78,8 +113,8 @@ void FastFlight::push(State& s, const FeedParticle& p, std::span<const Blow> blo
       const Blow& blow = *near[n];
       const double dx = at.x(), dy = at.y() - blow.y, r = std::sqrt(dx * dx + dy * dy);
       const JetField::Air air =
-          field_.at(r, at.z(), time - blow.pulse.from, blow.pulse.to - blow.pulse.from, widening);
-      if (air.axial == 0.0) continue;
+          field_.at(r, at.z(), time - blow.pulse.from, blow.pulse.to - blow.pulse.from, begin.widening);
+      if (air.axial == 0.0 || (hidden && hidden(blow, at))) continue;
       const double inverse = r > 1e-9 ? air.radial / r : 0.0;
       const Vec3 u(inverse * dx, inverse * dy, air.axial);
       momentum += blow.pulse.strength * u.norm() * u;
@@ -90,73 +125,78 @@ void FastFlight::push(State& s, const FeedParticle& p, std::span<const Blow> blo
     const Vec3 area = area_scale * (turn * piece.area);
     const double whole = area.norm(), normal = wind.dot(area) / whole;  // > 0: faces away
     const Vec3 push = (normal < 0.0 ? front : back) * field_.density() * normal * std::abs(normal) * area;
-    force += push;
-    torque += arm.cross(push);
+    load.force += push;
+    load.torque += arm.cross(push);
   }
-  s.velocity += dt / p.mass * force;
-  const double density = p.mass / (proto.volume * std::pow(p.scale, 3));
-  const Vec3 inertia = density * std::pow(p.scale, 5) * proto.inertia;
-  const Vec3 spin_body = turn.transpose() * s.spin, torque_body = turn.transpose() * torque;
-  const Vec3 momentum_body = inertia.cwiseProduct(spin_body);
-  s.spin += dt * (turn * (torque_body - spin_body.cross(momentum_body)).cwiseQuotient(inertia));
+  return load;
 }
 
-FlightEnd FastFlight::fly(const FeedParticle& p, double at, double y, std::span<const Blow> blows,
-                          bool keep_path) const {
-  const Vec3 gravity(0, 0, gravity_);
-  std::vector<Blow> near;
-  double from = 1e300, until = -1e300;
-  for (const Blow& b : blows)
-    if (may_meet(p, at, y, b)) {
-      near.push_back(b);
-      from = std::min(from, b.pulse.from);
-      until = std::max(until, b.pulse.from + field_.still_from(2.0 * height_, b.pulse.to - b.pulse.from));
+FastFlight::Begin FastFlight::begin(const Flyer& f) const {
+  Begin b{.blows = {}, .from = 1e300, .until = -1e300, .widening = widening(*f.particle)};
+  for (const Blow& blow : f.blows)
+    if (may_meet(f, blow)) {
+      b.blows.push_back(blow);
+      b.from = std::min(b.from, blow.pulse.from);
+      b.until = std::max(b.until,
+                         blow.pulse.from + field_.still_from(2.0 * height_, blow.pulse.to - blow.pulse.from));
     }
-  const double away = reach(p), wide = widening(p);
-  from = std::max(from, at - away / launch_.belt_speed);
-  FlightEnd end;
-  double time = near.empty() ? at : from;
-  const FlightState start = launch_state(launch_, Vec3::Zero(), gravity, time - at);
-  State s{.position = start.position + Vec3(0, y, 0),
-          .velocity = start.velocity,
-          .spin = p.spin,
-          .orientation = p.turned * orientation_of(p)};
-  const double left_belt = at - launch_.drop_distance / launch_.belt_speed;
+  b.from = b.blows.empty() ? f.at : std::max(b.from, f.at - reach(*f.particle) / launch_.belt_speed);
+  return b;
+}
+
+BodyState FastFlight::free_state(const Flyer& f, double time) const {
+  const FlightState start = launch_state(launch_, Vec3::Zero(), gravity(), time - f.at);
+  BodyState s{.position = start.position + Vec3(0, f.y, 0),
+              .velocity = start.velocity,
+              .spin = f.particle->spin,
+              .orientation = f.particle->turned * orientation_of(*f.particle)};
+  const double left_belt = f.at - launch_.drop_distance / launch_.belt_speed;
   turn(s.orientation, (time - left_belt) * s.spin);
-  end.path_from = time;
+  return s;
+}
+
+bool FastFlight::is_past(const Flyer& f, const BodyState& s) const {
+  return s.position.x() >= reach(*f.particle) || s.position.x() >= edge_x_;
+}
+
+FlightEnd FastFlight::fly(const Flyer& f) const {
+  const Begin b = begin(f);
+  BodyState s = free_state(f, b.from);
+  Track track{.gravity = gravity(), .from = b.from};
   double fell = 0.0;  // m/s, by gravity
   const double v0 = s.velocity.z();
-  auto note = [&, next = time]() mutable {
-    if (!keep_path || time < next - 0.5 * kAirStep) return;
-    end.path.push_back(s.position);
-    next += kPathStep;
-  };
-  while (!near.empty() && time < until && s.position.x() < away && s.position.x() < edge_x_) {
-    note();
-    s.position += 0.5 * kAirStep * s.velocity;
-    turn(s.orientation, 0.5 * kAirStep * s.spin);
-    push(s, p, near, wide, time + 0.5 * kAirStep, kAirStep);
+  for (double time = b.from; time < b.until && !is_past(f, s); time += kAirStep) {
+    track.states.push_back(s);
+    s.drift(0.5 * kAirStep);
+    kick(s, *f.particle, load(*f.particle, s, b, time + 0.5 * kAirStep), kAirStep);
     s.velocity.z() += kAirStep * gravity_;
     fell += kAirStep * gravity_;
-    s.position += 0.5 * kAirStep * s.velocity;
-    turn(s.orientation, 0.5 * kAirStep * s.spin);
-    time += kAirStep;
+    s.drift(0.5 * kAirStep);
   }
-  end.gain = s.velocity.z() - v0 - fell;
-  end.touched = std::abs(end.gain) > 1e-3;
-  if (s.velocity.x() <= 0.0) {  // blown back: it never comes to the plate
-    end.clearance = -edge_z_;
-    end.y = s.position.y();
-    return end;
-  }
-  const double left = (edge_x_ - s.position.x()) / s.velocity.x();
-  const Vec3 there = s.position + left * s.velocity + 0.5 * left * left * gravity;
-  if (keep_path)
-    for (double t = 0.0; t < left; t += kPathStep)
-      end.path.push_back(s.position + t * s.velocity + 0.5 * t * t * gravity);
-  end.clearance = there.z() - edge_z_;
-  end.y = there.y();
-  return end;
+  track.end = s;
+  return finish(std::move(track), s.velocity.z() - v0 - fell);
+}
+
+double FastFlight::time_to_edge(const BodyState& s) const {
+  if (s.position.x() >= edge_x_) return 0.0;
+  return s.velocity.x() > 0.0 ? (edge_x_ - s.position.x()) / s.velocity.x() : kNever;
+}
+
+FlightEnd FastFlight::pass(const Vec3& before, const Vec3& after, double gain) const {
+  const Vec3 there = before + (edge_x_ - before.x()) / (after.x() - before.x()) * (after - before);
+  return {
+      .gain = gain, .clearance = there.z() - edge_z_, .y = there.y(), .touched = std::abs(gain) > kLeastGain};
+}
+
+FlightEnd FastFlight::finish(Track track, double gain) const {
+  const double left = time_to_edge(track.end);
+  track.passes = track.until() + (left < kNever ? left : 0.0);
+  const BodyState there = track.at(track.passes);
+  return {.gain = gain,
+          .clearance = left < kNever ? there.position.z() - edge_z_ : -edge_z_,
+          .y = there.position.y(),
+          .touched = std::abs(gain) > kLeastGain,
+          .track = std::move(track)};
 }
 
 double AirCoefficients::of(const FeedParticle& p) const {

@@ -148,6 +148,31 @@ std::vector<Prototype> make_prototypes(const ParticleClassSpec& s, double size, 
   return list;
 }
 
+/// Of a particle at its own size.
+Shape shape_of(const ParticleClassSpec& spec, const Prototype& p, double scale) {
+  const double size = scale * p.size;
+  const Vec3 dimensions(size / spec.elongation, size, size * spec.flatness);
+  const auto scaled = [&](std::vector<Vec3> points) {
+    for (Vec3& v : points) v *= scale;
+    return points;
+  };
+  switch (spec.form) {
+    case ParticleForm::box:
+      return make_box(dimensions);
+    case ParticleForm::sphere:
+      return make_sphere(size);
+    case ParticleForm::cluster:
+      return make_cluster(dimensions, {3, 3, spec.flatness <= 0.5 ? 1 : 3}, 0.5 * size);
+    case ParticleForm::rock:
+      return make_polyhedron(scaled(p.shape.surface().vertices));
+    case ParticleForm::mesh:
+      break;
+  }
+  TriangleMesh mesh = p.shape.surface();
+  mesh.vertices = scaled(mesh.vertices);
+  return make_mesh(mesh, spec.file);
+}
+
 }  // namespace
 
 ParticleClass::ParticleClass(const ParticleClassSpec& spec, const std::string& directory, std::int64_t seed)
@@ -168,28 +193,12 @@ const Prototype& ParticleClass::prototype(double u) const {
   return prototypes_[std::min(n, prototypes_.size() - 1)];
 }
 
-Shape ParticleClass::shape_of(const Prototype& p, double scale) const {
-  const double size = scale * p.size;
-  const Vec3 dimensions(size / spec_.elongation, size, size * spec_.flatness);
-  const auto scaled = [&](std::vector<Vec3> points) {
-    for (Vec3& v : points) v *= scale;
-    return points;
-  };
-  switch (spec_.form) {
-    case ParticleForm::box:
-      return make_box(dimensions);
-    case ParticleForm::sphere:
-      return make_sphere(size);
-    case ParticleForm::cluster:
-      return make_cluster(dimensions, {3, 3, spec_.flatness <= 0.5 ? 1 : 3}, 0.5 * size);
-    case ParticleForm::rock:
-      return make_polyhedron(scaled(p.shape.surface().vertices));
-    case ParticleForm::mesh:
-      break;
-  }
-  TriangleMesh mesh = p.shape.surface();
-  mesh.vertices = scaled(mesh.vertices);
-  return make_mesh(mesh, spec_.file);
+Body body_of(const FeedParticle& p, const ParticleClassSpec& kind) {
+  Body b{.name = fmt::format("{} {}", kind.name, p.id), .shape = shape_of(kind, *p.prototype, p.scale)};
+  b.mass = p.mass;
+  b.inertia = kind.density * std::pow(p.scale, 5) * p.prototype->inertia;
+  b.orientation = orientation_of(p);
+  return b;
 }
 
 }  // namespace ejecta

@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "sorter/alone.hpp"
+#include "sorter/company.hpp"
 
 namespace ejecta {
 namespace {
@@ -17,6 +18,9 @@ constexpr double kDeviations = 5.0;
 
 constexpr double kSlips =
     10e-3;  ///< m/s, on the belt: 2 mm from the camera of the paper's machine to its jets
+
+/// m, of belt beside a stretch: who comes from farther does not push those on it.
+constexpr double kBeside = 0.3;
 
 double middle_of(const SeenObject& o) { return 0.5 * (o.x_low + o.x_high); }
 
@@ -46,8 +50,8 @@ Ejection fast_ejection(const Case& c, const JetSource& source) {
   const AirCoefficients coefficients;
   const auto field = std::make_shared<const JetField>(c, source);
   const auto flight = std::make_shared<const FastFlight>(c, *field, coefficients);
-  return {.fly = [field, flight](const FeedParticle& p, double at, double y, std::span<const Blow> blows,
-                                 bool keep_path) { return flight->fly(p, at, y, blows, keep_path); },
+  const auto company = std::make_shared<const Company>(c, *flight);
+  return {.fly = [field, flight, company](std::span<const Flyer> flyers) { return company->fly(flyers); },
           .reach = [flight](const FeedParticle& p) { return flight->reach(p); }};
 }
 
@@ -70,47 +74,52 @@ ValvePulses Sorter::pulses(std::int64_t first, std::int64_t last) const {
   return manifold_.pulses(look(first, last).commands);
 }
 
-FlightEnd Sorter::fly(const FeedParticle& p, const ValvePulses& pulses, bool as_seen, bool keep_path) const {
-  const double at = p.x / case_.launch.belt_speed + (as_seen ? 0.0 : p.late),
-               y = p.y + (as_seen ? 0.0 : p.beside);
+Flyer Sorter::flyer(const FeedParticle& p, const ValvePulses& pulses, bool as_seen) const {
+  Flyer f{.particle = &p,
+          .at = p.x / case_.launch.belt_speed + (as_seen ? 0.0 : p.late),
+          .y = p.y + (as_seen ? 0.0 : p.beside)};
   const double reach = ejection_.reach(p), pitch = valve_pitch(case_);
   const int count = case_.manifold.valves;
-  const double middle = y / pitch + 0.5 * count - 0.5;
+  const double middle = f.y / pitch + 0.5 * count - 0.5;
   const int first = std::max(0, static_cast<int>(std::ceil(middle - reach / pitch))),
             last = std::min(count - 1, static_cast<int>(std::floor(middle + reach / pitch)));
-  std::vector<Blow> blows;
   for (int v = first; v <= last; ++v) {
     const double delay = manifold_.delay(v);
     for (const ValvePulse& pulse : pulses[static_cast<std::size_t>(v)]) {
-      if (pulse.from + delay > at + kLongest || pulse.to + delay < at - kLongest) continue;
+      if (pulse.from + delay > f.at + kLongest || pulse.to + delay < f.at - kLongest) continue;
       Blow blow{valve_place(case_, v), pulse};
       blow.pulse.from += delay;
       blow.pulse.to += delay;
-      blows.push_back(blow);
+      f.blows.push_back(blow);
     }
   }
-  return ejection_.fly(p, at, y, blows, keep_path);
+  return f;
 }
 
-Fate Sorter::fate_of(const Scene& s, std::size_t n, FlightEnd* end) const {
+FlightEnd Sorter::fly_alone(const FeedParticle& p, const ValvePulses& pulses, bool as_seen) const {
+  const Flyer f = flyer(p, pulses, as_seen);
+  return std::move(ejection_.fly(std::span(&f, 1)).front());
+}
+
+Fate Sorter::fate_of(const Scene& s, std::size_t n, const FlightEnd& flight) const {
   const FeedParticle& p = s.particles[n];
   const bool wanted = case_.classes[static_cast<std::size_t>(p.kind)].eject;
-  const FlightEnd flight = fly(p, s.pulses, false, end != nullptr);
-  if (end) *end = flight;
   const SeenObject* object =
       s.object_of[n] < 0 ? nullptr : &s.objects[static_cast<std::size_t>(s.object_of[n])];
   const bool single = object && object->members.size() == 1, shot_at = object && object->eject;
+  const auto alone = [&] { return fly_alone(p, s.pulses).ejected(); };
   if (!wanted) {
     if (!flight.ejected()) return Fate::kept;
-    if (!shot_at) return Fate::taken_in_window;
-    return single ? Fate::taken_misread : Fate::taken_agglomerated;
+    if (shot_at) return single ? Fate::taken_misread : Fate::taken_agglomerated;
+    return flight.met && !alone() ? Fate::taken_pushed : Fate::taken_in_window;
   }
   if (flight.ejected()) return Fate::ejected;
   if (!object) return Fate::missed_not_seen;
   if (!shot_at) return single ? Fate::missed_misread : Fate::missed_agglomerated;
-  if (!s.pulses_with_dead.empty() && fly(p, s.pulses_with_dead, false, false).ejected())
+  if (!s.pulses_with_dead.empty() && fly_alone(p, s.pulses_with_dead).ejected())
     return Fate::missed_dead_valve;
-  if ((p.late != 0.0 || p.beside != 0.0) && fly(p, s.pulses, true, false).ejected()) return Fate::missed_late;
+  if ((p.late != 0.0 || p.beside != 0.0) && fly_alone(p, s.pulses, true).ejected()) return Fate::missed_late;
+  if (flight.in_company && alone()) return Fate::missed_pushed;
   if (!single) return Fate::missed_agglomerated;
   if (flight.clearance > -0.5 * p.scale * p.prototype->height) return Fate::missed_struck_plate;
   return Fate::missed_too_weak;
@@ -148,11 +157,23 @@ Shot Sorter::shot(const Scene& s, std::span<const ValveCommand> commands, std::s
                v +
            std::max({0.0, y_low - y, y - y_high});
   };
+  std::vector<Flyer> flyers;
+  std::vector<std::size_t> which_of;
   for (std::size_t n = 0; n < s.particles.size(); ++n) {
     const FeedParticle& p = s.particles[n];
-    const double at = p.x / v + p.late, y = p.y + p.beside, reach = ejection_.reach(p);
-    if (y < valve_place(case_, c.first) - reach || y > valve_place(case_, c.last) + reach) continue;
-    const FlightEnd end = ejection_.fly(p, at, y, blows, false);
+    const Flyer f{.particle = &p, .at = p.x / v + p.late, .y = p.y + p.beside, .blows = blows};
+    const double near = ejection_.reach(p) + kBeside;
+    if (f.y < valve_place(case_, c.first) - near || f.y > valve_place(case_, c.last) + near) continue;
+    if (std::abs(f.at - c.from) > kLongest + kBeside / v) continue;
+    flyers.push_back(f);
+    which_of.push_back(n);
+  }
+  const std::vector<FlightEnd> ends = ejection_.fly(flyers);
+  for (std::size_t f = 0; f < flyers.size(); ++f) {
+    const std::size_t n = which_of[f];
+    const FeedParticle& p = s.particles[n];
+    const double at = flyers[f].at, y = flyers[f].y;
+    const FlightEnd& end = ends[f];
     const bool member = s.object_of[n] == c.object;
     if (!end.touched && !member) continue;
     ShotBody body{.particle = p,
@@ -216,13 +237,22 @@ SortedStretch Sorter::sort(std::int64_t first, std::int64_t last, int show,
     const std::int64_t cell = feed_.cell_of(x);
     return cell >= first && cell < last ? &out.cells[static_cast<std::size_t>(cell - first)] : nullptr;
   };
+  const double from_x = static_cast<double>(first) * feed_.cell_length() - kBeside,
+               to_x = static_cast<double>(last) * feed_.cell_length() + kBeside;
+  std::vector<Flyer> flyers;
+  std::vector<std::size_t> flies(s.particles.size());
+  for (std::size_t n = 0; n < s.particles.size(); ++n) {
+    flies[n] = flyers.size();
+    if (const FeedParticle& p = s.particles[n]; p.x >= from_x && p.x < to_x)
+      flyers.push_back(flyer(p, s.pulses));
+  }
+  const std::vector<FlightEnd> flown = ejection_.fly(flyers);
   for (std::size_t n = 0; n < s.particles.size(); ++n) {
     const FeedParticle& p = s.particles[n];
     Tally* tally = tally_at(p.x);
     if (!tally) continue;
-    const bool shown = static_cast<int>(out.shown.size()) < show;
-    FlightEnd end;
-    const Fate fate = fate_of(s, n, shown ? &end : nullptr);
+    const FlightEnd& end = flown[flies[n]];
+    const Fate fate = fate_of(s, n, end);
     Tally::Kind& kind = tally->kinds[static_cast<std::size_t>(p.kind)];
     kind.number[static_cast<std::size_t>(fate)] += 1.0;
     kind.mass[static_cast<std::size_t>(fate)] += p.mass;
@@ -232,7 +262,9 @@ SortedStretch Sorter::sort(std::int64_t first, std::int64_t last, int show,
     kind.alone += single[n];
     const int o = s.object_of[n];
     kind.alone_seen += o >= 0 && s.objects[static_cast<std::size_t>(o)].members.size() == 1;
-    if (shown) out.shown.push_back({p, fate, end.path, end.path_from});
+    kind.met += end.met;
+    kind.in_another += end.in_another;
+    if (static_cast<int>(out.shown.size()) < show) out.shown.push_back({p, fate, end.track});
   }
   const double begins = static_cast<double>(first - halo_) * feed_.cell_length(),
                ends = static_cast<double>(last + halo_) * feed_.cell_length();

@@ -22,8 +22,7 @@ namespace ejecta {
 struct ShownParticle {
   FeedParticle particle;
   Fate fate = Fate::kept;
-  std::vector<Vec3> path{};  ///< m, from the jets; empty: the free flight
-  double path_from = 0.0;    ///< s, of its first point
+  Track track{};
 };
 
 /// A length of belt with all that happened to it.
@@ -34,13 +33,10 @@ struct SortedStretch {
   ValvePulses pulses{};               ///< of each valve, likewise
 };
 
-/// How a body flies over the jets: a tier of the ejection.
+/// How bodies fly over the jets: a tier of the ejection.
 struct Ejection {
-  /// `at`: s, when its centre is over the jets if no air blows; y from the middle of the belt; the blows of
-  /// all valves within reach; whether its path is kept.
-  std::function<FlightEnd(const FeedParticle& particle, double at, double y, std::span<const Blow> blows,
-                          bool keep_path)>
-      fly;
+  /// All at once, in the order of the flyers: they may push each other.
+  std::function<std::vector<FlightEnd>(std::span<const Flyer> flyers)> fly;
   std::function<double(const FeedParticle& particle)>
       reach;  ///< m, across, to the axis of a valve it may feel
 };
@@ -78,11 +74,13 @@ class Sorter {
 
  private:
   struct Scene;
-  Fate fate_of(const Scene& scene, std::size_t n, FlightEnd* end) const;
+  Fate fate_of(const Scene& scene, std::size_t n, const FlightEnd& flight) const;
   Scene look(std::int64_t first, std::int64_t last) const;
   void add_use(const ValvePulse& pulse, std::int64_t first, std::span<Tally> cells) const;
   Shot shot(const Scene& scene, std::span<const ValveCommand> commands, std::size_t which) const;
-  FlightEnd fly(const FeedParticle& p, const ValvePulses& pulses, bool as_seen, bool keep_path) const;
+  Flyer flyer(const FeedParticle& p, const ValvePulses& pulses, bool as_seen = false) const;
+  /// As if no other body were there.
+  FlightEnd fly_alone(const FeedParticle& p, const ValvePulses& pulses, bool as_seen = false) const;
 
   Case case_;
   Feed feed_;

@@ -16,8 +16,10 @@ const char* word(Fate fate) {
                                                          "missed_agglomerated",
                                                          "missed_dead_valve",
                                                          "missed_late",
+                                                         "missed_pushed",
                                                          "missed_struck_plate",
                                                          "missed_too_weak",
+                                                         "taken_pushed",
                                                          "taken_in_window",
                                                          "taken_misread",
                                                          "taken_agglomerated"};
@@ -47,13 +49,13 @@ std::vector<double> Tally::values() const {
   for (const Kind& k : kinds) {
     v.insert(v.end(), k.number.begin(), k.number.end());
     v.insert(v.end(), k.mass.begin(), k.mass.end());
-    v.insert(v.end(), {k.alone, k.alone_seen, k.area, k.slipping, k.late_squares});
+    v.insert(v.end(), {k.alone, k.alone_seen, k.area, k.slipping, k.met, k.in_another, k.late_squares});
   }
   return v;
 }
 
 Tally Tally::of_values(const std::vector<double>& values, std::size_t kinds) {
-  constexpr std::size_t kOfAll = 6, kOfKind = 2 * kFates + 5;
+  constexpr std::size_t kOfAll = 6, kOfKind = 2 * kFates + 7;
   if (values.size() != kOfAll + kinds * kOfKind)
     throw InputError(
         "the sums kept there are those of another version of the program\n  expected: --force, to start "
@@ -65,7 +67,8 @@ Tally Tally::of_values(const std::vector<double>& values, std::size_t kinds) {
     Kind kind;
     for (double& n : kind.number) n = *at++;
     for (double& m : kind.mass) m = *at++;
-    for (double* one : {&kind.alone, &kind.alone_seen, &kind.area, &kind.slipping, &kind.late_squares})
+    for (double* one : {&kind.alone, &kind.alone_seen, &kind.area, &kind.slipping, &kind.met,
+                        &kind.in_another, &kind.late_squares})
       *one = *at++;
     t.kinds.push_back(kind);
   }

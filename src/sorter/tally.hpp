@@ -16,15 +16,17 @@ enum class Fate {
   missed_agglomerated,  ///< with others in one object, which was read as to be kept or shot at another place
   missed_dead_valve,    ///< the valves that are dead would have done it
   missed_late,          ///< it did not come when and where it was seen to come
+  missed_pushed,        ///< others, near it in the air, pushed it or took its air
   missed_struck_plate,  ///< its body met the edge of the plate
   missed_too_weak,      ///< shot at as it should be, and not lifted enough
+  taken_pushed,         ///< to be kept, and pushed over the plate by another body
   taken_in_window,      ///< to be kept, and ejected by a shot at another
   taken_misread,        ///< read as to be ejected
   taken_agglomerated    ///< in one object with one to be ejected
 };
-inline constexpr std::size_t kFates = 12;
+inline constexpr std::size_t kFates = 14;
 const char* word(Fate fate);
-inline bool goes_to_ejects(Fate f) { return f == Fate::ejected || f >= Fate::taken_in_window; }
+inline bool goes_to_ejects(Fate f) { return f == Fate::ejected || f >= Fate::taken_pushed; }
 
 /// Of a piece of the belt, or of all of it.
 struct Tally {
@@ -34,6 +36,8 @@ struct Tally {
     double alone_seen = 0.0;                      ///< whose object is theirs alone
     double area = 0.0;                            ///< m2, of outlines from above
     double slipping = 0.0;                        ///< particles that slip on the belt as they are seen
+    double met = 0.0;                             ///< particles that touched another in the air
+    double in_another = 0.0;                      ///< that lay in another as they came, and flew as if alone
     double late_squares = 0.0;  ///< s2, of how much later than it was seen to come each comes
   };
   std::vector<Kind> kinds;

@@ -190,12 +190,12 @@ TEST(FastFlight, WithoutAirIsTheFreeFlightAndWithItGoesUpEvenly) {
   FeedParticle p;
   p.prototype = &made.prototype(0.5);
   p.mass = made.mass_of(*p.prototype, 1.0);
-  const FlightEnd free = flight.fly(p, 0.0, 0.0, {});
+  const FlightEnd free = flight.fly({.particle = &p, .at = 0.0, .y = 0.0});
   EXPECT_NEAR(free.clearance, -c.splitter.height, 1e-12);
   EXPECT_EQ(free.gain, 0.0);
   const Blow blow{0.0, {.from = -6e-3, .to = 2e-3}};
-  const FlightEnd left = flight.fly(p, 0.0, 3e-3, std::span(&blow, 1)),
-                  right = flight.fly(p, 0.0, -3e-3, std::span(&blow, 1));
+  const FlightEnd left = flight.fly({.particle = &p, .at = 0.0, .y = 3e-3, .blows = {blow}}),
+                  right = flight.fly({.particle = &p, .at = 0.0, .y = -3e-3, .blows = {blow}});
   EXPECT_GT(left.gain, 0.1);
   EXPECT_NEAR(left.gain, right.gain, 1e-9);
   EXPECT_NEAR(left.y, -right.y, 1e-9);

@@ -36,8 +36,10 @@ class PaperBody {
   double gain(double along, double across) const {
     const Blow blow{0.0, {.from = case_.valve.opens_at, .to = case_.valve.opens_at + case_.valve.duration}};
     return flight_
-        .fly(particle_, case_.launch.arrives_at - along / case_.launch.belt_speed, across,
-             std::span(&blow, 1))
+        .fly({.particle = &particle_,
+              .at = case_.launch.arrives_at - along / case_.launch.belt_speed,
+              .y = across,
+              .blows = {blow}})
         .gain;
   }
 

@@ -87,13 +87,17 @@ TEST(StandingAlone, IsMoreFrequentInAMonolayer) {
 /// belt's way while it is open.
 Ejection over_open_valve(double pitch, double lead) {
   return {.fly =
-              [=](const FeedParticle&, double at, double y, std::span<const Blow> blows, bool) {
-                FlightEnd end;
-                end.clearance = -1.0;
-                for (const Blow& b : blows)
-                  if (std::abs(y - b.y) < 0.5 * pitch && at - lead >= b.pulse.from && at - lead < b.pulse.to)
-                    end.clearance = 1.0;
-                return end;
+              [=](std::span<const Flyer> flyers) {
+                std::vector<FlightEnd> ends;
+                for (const Flyer& f : flyers) {
+                  FlightEnd& end = ends.emplace_back();
+                  end.clearance = -1.0;
+                  for (const Blow& b : f.blows)
+                    if (std::abs(f.y - b.y) < 0.5 * pitch && f.at - lead >= b.pulse.from &&
+                        f.at - lead < b.pulse.to)
+                      end.clearance = 1.0;
+                }
+                return ends;
               },
           .reach = [=](const FeedParticle&) { return pitch; }};
 }
@@ -182,6 +186,7 @@ TEST(Stretches, HoldAllThatLongCommandsDo) {
   Case c = load_case(EJECTA_SOURCE_DIR "/cases/sorter/tutorial.toml");
   c.controller.duration = 0.4;
   c.controller.lead = 0.3;
+  c.sorter.encounters = false;  // all would be pushed, and near each other
   const auto source = make_jet_source(c);
   const Sorter sorter(c, fast_ejection(c, *source));
   EXPECT_GT(sorter.halo(), 3);
