@@ -87,10 +87,6 @@ bool beyond(const Polytope& solid, const HalfSpace& plane) {
   return plane.normal.dot(support_polytope(solid, plane.normal)) > plane.offset;
 }
 
-std::span<const int> corners_of(const Polytope& p, const Polytope::Face& f) {
-  return std::span(p.corners).subspan(static_cast<std::size_t>(f.first), static_cast<std::size_t>(f.count));
-}
-
 /// Whether a face is of the far side, seen along `along`.
 bool is_far(const Polytope::Face& f, const Vec3& along) { return f.normal.dot(along) < kFarSide; }
 
@@ -299,10 +295,15 @@ Touch find_touch(const SolidPair& pair, const Parts& parts, std::span<const Body
   const Body& body = bodies[static_cast<std::size_t>(pair.body_a)];
   const Mat3 turn = body.orientation.toRotationMatrix();
   const Triple<double>& normal = pair.history.normal;
-  return touch_of(overlap_solids(*part.solid, *other_part.solid, turn.transpose() * other_turn,
-                                 turn.transpose() * (other.position + pair.shift - body.position),
-                                 turn.transpose() * Vec3(normal.x, normal.y, normal.z)),
-                  std::min(part.radius, other_part.radius), turn, body.position);
+  const Mat3 rotation = turn.transpose() * other_turn;
+  const Vec3 shift = turn.transpose() * (other.position + pair.shift - body.position),
+             out = turn.transpose() * Vec3(normal.x, normal.y, normal.z);
+  Touch touch{.apart = pair.touch.apart};
+  if (out.isZero() && stand_apart(*part.solid, *other_part.solid, rotation, shift, touch.apart)) return touch;
+  touch = touch_of(overlap_solids(*part.solid, *other_part.solid, rotation, shift, out),
+                   std::min(part.radius, other_part.radius), turn, body.position);
+  touch.apart = pair.touch.apart;
+  return touch;
 }
 
 double distance_to(const SolidPair& pair, const Vec3& point, const Parts& parts, std::span<const Body> bodies,

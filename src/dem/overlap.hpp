@@ -20,6 +20,11 @@ Overlap overlap_half_space(const Polytope& a, const Vec3& normal, double offset)
 /// Of a polytope with all that lies within the planes; `area` is that of all of them inside a.
 Overlap overlap_cell(const Polytope& a, std::span<const HalfSpace> planes);
 
+/// Whether a plane keeps two polytopes apart by more than what rounding may hide; false: not found. `along`:
+/// its normal, from a to b, as it was (zero: unknown) and is: from step to step it hardly turns.
+bool stand_apart(const Polytope& a, const Polytope& b, const Mat3& rotation, const Vec3& translation,
+                 Vec3& along);
+
 /// Of two polytopes; p -> rotation * p + translation takes b's axes to a's.
 Overlap overlap_polytopes(const Polytope& a, const Polytope& b, const Mat3& rotation,
                           const Vec3& translation);

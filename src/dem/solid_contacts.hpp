@@ -36,6 +36,7 @@ struct Touch {
   int face = -1;              ///< of a polytope before which a ball is
   bool on_face = false;       ///< of a triangle: the ball stands on its inside, not on its rim
   bool ghost = false;         ///< a meets a side that does not touch
+  Vec3 apart{0, 0, 0};        ///< two polytopes stood apart along this when last looked at, axes of a's body
 };
 
 /// What changes in time along a contact.

@@ -138,8 +138,16 @@ NearestPoint nearest_on_polytope(const Polytope& p, const Vec3& point) {
 }
 
 Vec3 support_polytope(const Polytope& p, const Vec3& direction) {
-  return *std::max_element(p.vertices.begin(), p.vertices.end(),
-                           [&](const Vec3& a, const Vec3& b) { return direction.dot(a) < direction.dot(b); });
+  std::size_t farthest = 0;
+  double most = direction.dot(p.vertices[0]);
+  for (std::size_t n = 1; n < p.vertices.size(); ++n) {
+    const double reach = direction.dot(p.vertices[n]);
+    if (reach > most) {
+      most = reach;
+      farthest = n;
+    }
+  }
+  return p.vertices[farthest];
 }
 
 double volume_polytope(const Polytope& p) { return mass_mesh(triangles_of(p)).volume; }

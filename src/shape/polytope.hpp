@@ -28,6 +28,11 @@ struct Polytope {
   double largest_face = 0.0;  ///< m2
 };
 
+/// Indices of the vertices of a face, counter-clockwise.
+inline std::span<const int> corners_of(const Polytope& p, const Polytope::Face& f) {
+  return std::span(p.corners).subspan(static_cast<std::size_t>(f.first), static_cast<std::size_t>(f.count));
+}
+
 /// Convex hull of the points; coplanar triangles become one face. Throws InputError where the points have no
 /// volume.
 Polytope convex_hull(const std::vector<Vec3>& points);
