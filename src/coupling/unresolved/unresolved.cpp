@@ -57,29 +57,38 @@ template <std::size_t kN>
 std::array<double, kN> UnresolvedCoupling::gather(std::size_t at,
                                                   const std::array<ConstFieldView, kN>& fields) const {
   const Place& p = places_[at];
-  const Real* along = weights(at, 0);
-  const ConstFieldView room = room_.view();
+  if (p.in_pieces) return gather_in_pieces<kN>(at, fields);
+  const Real *along = weights(at, 0), *room = p.near_bodies ? room_.view().origin : nullptr;
   RealRun sums[kN] = {};
-  const auto add_row = [&](int j, int k, Real w) {
-    if (p.in_pieces) {
-      for (int a = 0; a < p.count[0]; ++a) {
-        const int i = wrapped(p.first[0] + a, 0);
-        const Real weight = w * along[a] * (p.near_bodies ? room(i, j, k) : Real(1));
-        for (std::size_t c = 0; c < kN; ++c) sums[c][a % kRun] += weight * fields[c](i, j, k);
+  for (int plane = 0; plane < p.count[2]; ++plane)
+    for_each_row(at, plane, [&](int j, int k, Real w) {
+      std::ptrdiff_t cell = p.first[0] + j * fields[0].sy + k * fields[0].sz;
+      for (int a = 0; a < p.count[0]; a += kRun, cell += kRun) {
+        RealRun weight = w * run_at(along + a);
+        if (room) weight *= run_at(room + cell);
+        for (std::size_t c = 0; c < kN; ++c) sums[c] += weight * run_at(fields[c].origin + cell);
       }
-      return;
-    }
-    for (int a = 0; a < p.count[0]; a += kRun) {
-      const std::ptrdiff_t cell = &fields[0](p.first[0] + a, j, k) - fields[0].origin;
-      RealRun weight = w * run_at(along + a);
-      if (p.near_bodies) weight *= run_at(room.origin + cell);
-      for (std::size_t c = 0; c < kN; ++c) sums[c] += weight * run_at(fields[c].origin + cell);
-    }
-  };
-  for (int plane = 0; plane < p.count[2]; ++plane) for_each_row(at, plane, add_row);
+    });
   std::array<double, kN> out;
   for (std::size_t c = 0; c < kN; ++c) out[c] = sum_of(sums[c]);
   return out;
+}
+
+/// Cell by cell, for rows that go on at the other end of the box, or are shorter than a run.
+template <std::size_t kN>
+std::array<double, kN> UnresolvedCoupling::gather_in_pieces(
+    std::size_t at, const std::array<ConstFieldView, kN>& fields) const {
+  const Place& p = places_[at];
+  std::array<double, kN> sums{};
+  for (int plane = 0; plane < p.count[2]; ++plane)
+    for_each_row(at, plane, [&](int j, int k, Real w) {
+      for (int a = 0; a < p.count[0]; ++a) {
+        const int i = wrapped(p.first[0] + a, 0);
+        const Real weight = w * weights(at, 0)[a] * (p.near_bodies ? room_(i, j, k) : Real(1));
+        for (std::size_t c = 0; c < kN; ++c) sums[c] += double(weight * fields[c](i, j, k));
+      }
+    });
+  return sums;
 }
 
 /// Cells whose fluid is carried by another have no velocity of their own, nor have cells in bodies.

@@ -93,6 +93,8 @@ class UnresolvedCoupling {
   void for_each_row(std::size_t at, int plane, const Visit& visit) const;
   template <std::size_t kN>
   std::array<double, kN> gather(std::size_t at, const std::array<ConstFieldView, kN>& fields) const;
+  template <std::size_t kN>
+  std::array<double, kN> gather_in_pieces(std::size_t at, const std::array<ConstFieldView, kN>& fields) const;
   /// visit(place) for the grains that reach into a plane of cells, and the plane's number in their kernels.
   template <class Visit>
   void for_each_in_plane(int k, const Visit& visit) const;

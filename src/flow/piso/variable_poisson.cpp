@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "base/row_sum.hpp"
 #include "flow/stencil.hpp"
 
 namespace ejecta {
@@ -39,28 +40,35 @@ VariablePoisson::VariablePoisson(const Grid& grid, const Boundaries& boundaries,
   for (Field* f : {&z_, &direction_, &image_}) *f = grid.make_field();
 }
 
+/// Whole registers are computed, and what is in cells is added up while the row is at hand.
+template <class Compute, class Value>
+double VariablePoisson::sum_rows(const Compute& compute, const Value& value) const {
+  const int nx = grid_.nx();
+  return reduce_sum({0, 1, 0, grid_.ny(), 0, grid_.nz()}, [&](int, int j, int k) {
+    for_each_lane(
+        0, nx, [&](int i) __attribute__((always_inline)) { compute(i, j, k); });
+    return row_sum(
+        0, nx, [&](int i) __attribute__((always_inline)) { return value(i, j, k); });
+  });
+}
+
 /// z = c^-1/2 L^-1 c^-1/2 r; returns -r z.
 double VariablePoisson::precondition(ConstFieldView inverse_roots, ConstFieldView r) {
   const FieldView z = z_.view();
   for_each_cell(grid_.range(),
                 [=](int i, int j, int k) { z(i, j, k) = r(i, j, k) * inverse_roots(i, j, k); });
   constant_.solve(z, z);
-  return -reduce_sum(grid_.range(), [=](int i, int j, int k) {
-    const Real value = z(i, j, k) * inverse_roots(i, j, k);
-    z(i, j, k) = value;
-    return double(r(i, j, k)) * double(value);
-  });
+  return -sum_rows([=](int i, int j, int k) { z(i, j, k) *= inverse_roots(i, j, k); },
+                   [=](int i, int j, int k) { return double(r(i, j, k)) * double(z(i, j, k)); });
 }
 
 /// Puts into image_ what the equation makes of the direction; returns the negative product of the two.
 double VariablePoisson::apply(const std::array<ConstFieldView, 3>& faces) {
   const FlowInto inflow{faces, direction_.view(), {grid_.metrics(0), grid_.metrics(1), grid_.metrics(2)}};
-  return -reduce_sum(
-      grid_.range(), [ =, out = image_.view() ](int i, int j, int k) __attribute__((always_inline)) {
-        const Real value = inflow(i, j, k);
-        out(i, j, k) = value;
-        return double(inflow.f(i, j, k)) * double(value);
-      });
+  const FieldView out = image_.view();
+  return -sum_rows(
+      [=](int i, int j, int k) __attribute__((always_inline)) { out(i, j, k) = inflow(i, j, k); },
+      [=](int i, int j, int k) { return double(inflow.f(i, j, k)) * double(out(i, j, k)); });
 }
 
 int VariablePoisson::solve(const std::array<ConstFieldView, 3>& faces, ConstFieldView inverse_roots,
@@ -86,12 +94,12 @@ int VariablePoisson::solve(const std::array<ConstFieldView, 3>& faces, ConstFiel
     const double curvature = apply(faces);
     if (!(curvature > 0)) return n;
     const Real alpha = static_cast<Real>(now / curvature);
-    left_ = std::sqrt(reduce_sum(grid_.range(), [=, image = image_.view()](int i, int j, int k) {
-      phi(i, j, k) += alpha * d(i, j, k);
-      const Real rest = r(i, j, k) - alpha * image(i, j, k);
-      r(i, j, k) = rest;
-      return double(rest) * double(rest);
-    }));
+    left_ = std::sqrt(sum_rows(
+        [=, image = image_.view()](int i, int j, int k) {
+          phi(i, j, k) += alpha * d(i, j, k);
+          r(i, j, k) -= alpha * image(i, j, k);
+        },
+        [=](int i, int j, int k) { return double(r(i, j, k)) * double(r(i, j, k)); }));
     before = now;
   }
   return kMostSteps;

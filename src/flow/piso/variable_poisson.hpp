@@ -27,6 +27,8 @@ class VariablePoisson {
   double residual() const { return left_; }
 
  private:
+  template <class Compute, class Value>
+  double sum_rows(const Compute& compute, const Value& value) const;
   double precondition(ConstFieldView inverse_roots, ConstFieldView r);
   double apply(const std::array<ConstFieldView, 3>& faces);
 
