@@ -1,5 +1,7 @@
 #pragma once
 #include <algorithm>
+#include <cstddef>
+#include <vector>
 
 #include "base/parallel.hpp"
 
@@ -16,6 +18,18 @@ void for_each_block(int count, int block, const Kernel& kernel) {
   const auto run = [&](int b) { kernel(b, b * block, std::min((b + 1) * block, count)); };
   if (blocks == 1) return run(0);
   if (blocks > 1) for_each_index(blocks, run);
+}
+
+/// The largest value(n) of count items, at least `least`: the same for any number of threads.
+template <class Value>
+double largest_of(int count, int block, double least, const Value& value) {
+  std::vector<double> of_block(static_cast<std::size_t>(block_count(count, block)), least);
+  for_each_block(count, block, [&](int b, int begin, int end) {
+    double& largest = of_block[static_cast<std::size_t>(b)];
+    for (int n = begin; n < end; ++n) largest = std::max(largest, value(static_cast<std::size_t>(n)));
+  });
+  for (const double largest : of_block) least = std::max(least, largest);
+  return least;
 }
 
 }  // namespace ejecta
