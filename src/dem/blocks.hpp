@@ -1,7 +1,7 @@
 #pragma once
 #include <algorithm>
 #include <cstddef>
-#include <vector>
+#include <numeric>
 
 #include "base/parallel.hpp"
 
@@ -23,13 +23,14 @@ void for_each_block(int count, int block, const Kernel& kernel) {
 /// The largest value(n) of count items, at least `least`: the same for any number of threads.
 template <class Value>
 double largest_of(int count, int block, double least, const Value& value) {
-  std::vector<double> of_block(static_cast<std::size_t>(block_count(count, block)), least);
+  const int blocks = block_count(count, block);
+  double* largest = detail::partial_sums(blocks).data();
   for_each_block(count, block, [&](int b, int begin, int end) {
-    double& largest = of_block[static_cast<std::size_t>(b)];
-    for (int n = begin; n < end; ++n) largest = std::max(largest, value(static_cast<std::size_t>(n)));
+    double most = least;
+    for (int n = begin; n < end; ++n) most = std::max(most, value(static_cast<std::size_t>(n)));
+    largest[b] = most;
   });
-  for (const double largest : of_block) least = std::max(least, largest);
-  return least;
+  return std::accumulate(largest, largest + blocks, least, [](double a, double b) { return std::max(a, b); });
 }
 
 }  // namespace ejecta

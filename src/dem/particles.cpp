@@ -45,7 +45,9 @@ double Particles::stable_dt() const {
     double centre = kSlowest;
     Farthest<double> point;  // m/s, of any point of a body
   };
-  std::vector<Fastest> blocks(static_cast<std::size_t>(block_count(count, kBodyBlock)));
+  thread_local std::vector<Fastest> scratch;
+  std::vector<Fastest>& blocks = scratch;
+  blocks.assign(static_cast<std::size_t>(block_count(count, kBodyBlock)), {});
   for_each_block(count, kBodyBlock, [&](int block, int begin, int end) {
     Fastest& of = blocks[static_cast<std::size_t>(block)];
     for (std::size_t n = static_cast<std::size_t>(begin); n < static_cast<std::size_t>(end); ++n) {
@@ -68,20 +70,14 @@ double Particles::stable_dt() const {
 
 /// s, of bodies that meet at a speed, m/s; at most 1.
 double Particles::shortest_contact(double speed) const {
-  const int count = static_cast<int>(bodies_.size());
-  std::vector<double> blocks(static_cast<std::size_t>(block_count(count, kBodyBlock)), 1.0);
-  for_each_block(count, kBodyBlock, [&](int block, int begin, int end) {
-    double& time = blocks[static_cast<std::size_t>(block)];
-    const Body* last = nullptr;
-    for (std::size_t n = static_cast<std::size_t>(begin); n < static_cast<std::size_t>(end); ++n) {
-      const Body& b = bodies_[n];
-      if (b.motion != Motion::free) continue;
-      if (last && last->material == b.material && last->mass == b.mass && last->shape.is(b.shape)) continue;
-      time = std::min(time, contact_time(b, materials_, speed));
-      last = &b;
-    }
+  const auto same = [](const Body& a, const Body& b) {
+    return a.motion == b.motion && a.material == b.material && a.mass == b.mass && a.shape.is(b.shape);
+  };
+  return -largest_of(static_cast<int>(bodies_.size()), kBodyBlock, -1.0, [&](std::size_t n) {
+    const Body& b = bodies_[n];
+    if (b.motion != Motion::free || (n > 0 && same(bodies_[n - 1], b))) return -1.0;
+    return -contact_time(b, materials_, speed);
   });
-  return blocks.empty() ? 1.0 : *std::min_element(blocks.begin(), blocks.end());
 }
 
 /// Velocity Verlet (Swope et al. 1982, J. Chem. Phys. 76:637): half a kick, drift, new forces, half a kick.

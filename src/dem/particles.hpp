@@ -166,6 +166,7 @@ class Particles {
     Vec3 velocity{0, 0, 0}, spin{0, 0, 0};
   };
   std::vector<Launch> launches_;  // of bodies that rest until they are released
+  std::vector<char> changes_;     // in which blocks of bodies some may come or go
   std::vector<char> packed_;      // which bodies spheres_ holds
   std::vector<char> pushed_;      // by solids: force_ and torque_ are not zero
   std::vector<Vec3> listed_at_;   // positions for which candidates were listed

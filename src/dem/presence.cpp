@@ -61,15 +61,15 @@ bool Particles::inside(const Body& b) const {
 /// Most bodies stay where they are: those who may come or go are looked for by all threads.
 void Particles::enter_and_leave() {
   const int count = static_cast<int>(bodies_.size());
-  std::vector<char> changes(static_cast<std::size_t>(block_count(count, kPresenceBlock)), false);
+  changes_.assign(static_cast<std::size_t>(block_count(count, kPresenceBlock)), false);
   for_each_block(count, kPresenceBlock, [&](int block, int begin, int end) {
     for (std::size_t n = static_cast<std::size_t>(begin); n < static_cast<std::size_t>(end); ++n)
       if (presence_[n] == Presence::waiting || (presence_[n] == Presence::here && !inside(bodies_[n])))
-        changes[static_cast<std::size_t>(block)] = true;
+        changes_[static_cast<std::size_t>(block)] = true;
   });
   int looks = 0;
-  for (int block = 0; block < static_cast<int>(changes.size()); ++block)
-    if (changes[static_cast<std::size_t>(block)])
+  for (int block = 0; block < static_cast<int>(changes_.size()); ++block)
+    if (changes_[static_cast<std::size_t>(block)])
       enter_and_leave(block * kPresenceBlock, std::min((block + 1) * kPresenceBlock, count), looks);
 }
 

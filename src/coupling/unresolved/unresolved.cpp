@@ -10,7 +10,8 @@
 namespace ejecta {
 namespace {
 
-constexpr int kGrainBlock = 256;  // grains one thread takes at a time
+constexpr int kGrainBlock = 256;    // grains one thread takes at a time
+constexpr std::size_t kAhead = 12;  // grains: bodies lie far apart in memory and are asked for in time
 
 /// Numbers of a run of cells, at any address.
 using RealRun = Real __attribute__((vector_size(4 * sizeof(Real)), aligned(alignof(Real)), may_alias));
@@ -117,6 +118,7 @@ void UnresolvedCoupling::note_grains(std::span<const Body> grains) {
   for (std::size_t n = diameters_.size(); n < grains.size(); ++n) {
     diameters_.push_back(2 * grains[n].shape.bounding_radius());
     volumes_.push_back(grains[n].shape.mass_properties().volume);
+    masses_.push_back(grains[n].mass);
   }
   cells_.resize(grains.size(), {0, 0, 0});
   pushed_.resize(grains.size(), Vec3(0, 0, 0));
@@ -153,6 +155,9 @@ void UnresolvedCoupling::place_grains(std::span<const Body> grains) {
     for_each_grain_block(listed_.size(), [&](std::size_t b, std::size_t begin, std::size_t end) {
       most[b] = {0, 0};
       for (std::size_t at = begin; at < end; ++at) {
+        const std::size_t later = static_cast<std::size_t>(listed_[std::min(at + kAhead, end - 1)]);
+        __builtin_prefetch(&grains[later].position);
+        __builtin_prefetch(&cells_[later]);
         const int grain = places_[at].grain = listed_[at];
         const int cells = place(grains[static_cast<std::size_t>(grain)], at), first = places_[at].first[2],
                   home = cells_[static_cast<std::size_t>(grain)][2];
@@ -372,12 +377,15 @@ void UnresolvedCoupling::look_around(std::span<const Body> grains, std::size_t a
   constexpr double kLeastFraction = 0.05;
   const Place& p = places_[at];
   const std::size_t g = static_cast<std::size_t>(p.grain);
-  const Body& grain = grains[g];
+  const Body &grain = grains[g],
+             &later = grains[static_cast<std::size_t>(listed_[std::min(at + kAhead, listed_.size() - 1)])];
+  __builtin_prefetch(&later.velocity);
+  __builtin_prefetch(&later.motion);
   const auto seen = gather<4>(at, {velocity[0], velocity[1], velocity[2], solids});
   const double inverse = p.inside > 0 ? 1 / p.inside : 0.0;
   batch.diameter[n] = diameters_[g];
   batch.volume[n] = volumes_[g];
-  batch.mass[n] = grain.mass;
+  batch.mass[n] = masses_[g];
   batch.is_free[n] = grain.motion == Motion::free;
   batch.fraction[n] = std::max(1 - inverse * seen[3], kLeastFraction);
   batch.density[n] = p.density;
@@ -405,7 +413,11 @@ void UnresolvedCoupling::collect(std::span<const Body> grains, const std::vector
   const Vec3 driven = setup_.body_force - setup_.gravity;
   for_each_grain_block(places_.size(), [&](std::size_t, std::size_t begin, std::size_t end) {
     for (std::size_t at = begin; at < end; ++at) {
-      const std::size_t n = static_cast<std::size_t>(places_[at].grain);
+      const std::size_t n = static_cast<std::size_t>(listed_[at]),
+                        later = static_cast<std::size_t>(listed_[std::min(at + kAhead, end - 1)]);
+      __builtin_prefetch(&loads[later], 1);
+      __builtin_prefetch(&drag_force_[later], 1);
+      __builtin_prefetch(&pushed_[later], 1);
       const auto sums = gather<6>(at, fields);
       const Vec3 u(sums[0], sums[1], sums[2]), gradients(sums[3], sums[4], sums[5]);
       const double inside = places_[at].inside;
@@ -413,7 +425,7 @@ void UnresolvedCoupling::collect(std::span<const Body> grains, const std::vector
       const Vec3 by_volume = setup_.fluid_density * volumes_[n] * (gradients + inside * driven);
       loads[n] = Load{};
       loads[n].force = drag_force_[n] + by_volume;
-      pushed_[n] = by_volume / grains[n].mass;
+      pushed_[n] = by_volume / masses_[n];
     }
   });
 }

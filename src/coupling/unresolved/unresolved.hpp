@@ -114,7 +114,7 @@ class UnresolvedCoupling {
   bool bodies_ = false;  // there are
   Range3 around_;        // cells that they cut and fill
   std::array<std::vector<double>, 3> inverse_widths_;  // of the cells, 1/m
-  std::vector<double> diameters_, volumes_;            // of the grains, m, m3
+  std::vector<double> diameters_, volumes_, masses_;   // of the grains, m, m3, kg
   std::vector<std::array<int, 3>> cells_;              // in which they are, or were when they last were there
   std::vector<int> listed_;                            // those that are there, row by row
   std::vector<int> first_of_row_;  // in listed_ and what follows, which stand in its order
