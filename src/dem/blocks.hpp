@@ -1,5 +1,7 @@
 #pragma once
 #include <algorithm>
+#include <cstddef>
+#include <numeric>
 
 #include "base/parallel.hpp"
 
@@ -16,6 +18,19 @@ void for_each_block(int count, int block, const Kernel& kernel) {
   const auto run = [&](int b) { kernel(b, b * block, std::min((b + 1) * block, count)); };
   if (blocks == 1) return run(0);
   if (blocks > 1) for_each_index(blocks, run);
+}
+
+/// The largest value(n) of count items, at least `least`: the same for any number of threads.
+template <class Value>
+double largest_of(int count, int block, double least, const Value& value) {
+  const int blocks = block_count(count, block);
+  double* largest = detail::partial_sums(blocks).data();
+  for_each_block(count, block, [&](int b, int begin, int end) {
+    double most = least;
+    for (int n = begin; n < end; ++n) most = std::max(most, value(static_cast<std::size_t>(n)));
+    largest[b] = most;
+  });
+  return std::accumulate(largest, largest + blocks, least, [](double a, double b) { return std::max(a, b); });
 }
 
 }  // namespace ejecta

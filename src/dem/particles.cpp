@@ -40,25 +40,44 @@ bool Particles::moves(std::size_t n) const {
 }
 
 double Particles::stable_dt() const {
-  double fastest = kSlowest;
-  Farthest<double> way;  // m/s, of any point of a body
-  for (std::size_t n = 0; n < bodies_.size(); ++n) {
-    if (presence_[n] != Presence::here) continue;
-    const double speed = bodies_[n].velocity.norm();
-    fastest = std::max(fastest, speed);
-    way.note(speed + bodies_[n].angular_velocity.norm() * bodies_[n].shape.bounding_radius());
+  const int count = static_cast<int>(bodies_.size());
+  struct Fastest {
+    double centre = kSlowest;
+    Farthest<double> point;  // m/s, of any point of a body
+  };
+  thread_local std::vector<Fastest> scratch;
+  std::vector<Fastest>& blocks = scratch;
+  blocks.assign(static_cast<std::size_t>(block_count(count, kBodyBlock)), {});
+  for_each_block(count, kBodyBlock, [&](int block, int begin, int end) {
+    Fastest& of = blocks[static_cast<std::size_t>(block)];
+    for (std::size_t n = static_cast<std::size_t>(begin); n < static_cast<std::size_t>(end); ++n) {
+      if (presence_[n] != Presence::here) continue;
+      const double speed = bodies_[n].velocity.norm();
+      of.centre = std::max(of.centre, speed);
+      of.point.note(speed + bodies_[n].angular_velocity.norm() * bodies_[n].shape.bounding_radius());
+    }
+  });
+  Fastest all;
+  for (const Fastest& of : blocks) {
+    all.centre = std::max(all.centre, of.centre);
+    all.point.note(of.point.second);
+    all.point.note(of.point.first);
   }
-  const double longest = passing_time(thinnest_, std::max(way.first + way.second, kSlowest));
+  const double longest = passing_time(thinnest_, std::max(all.point.first + all.point.second, kSlowest));
   if (contact_.time_step) return std::min(*contact_.time_step, longest);
-  double time = 1.0;
-  const Body* last = nullptr;
-  for (const Body& b : bodies_) {
-    if (b.motion != Motion::free) continue;
-    if (last && last->material == b.material && last->mass == b.mass && last->shape.is(b.shape)) continue;
-    time = std::min(time, contact_time(b, materials_, fastest));
-    last = &b;
-  }
-  return std::min(contact_.time_step_fraction * time, longest);
+  return std::min(contact_.time_step_fraction * shortest_contact(all.centre), longest);
+}
+
+/// s, of bodies that meet at a speed, m/s; at most 1.
+double Particles::shortest_contact(double speed) const {
+  const auto same = [](const Body& a, const Body& b) {
+    return a.motion == b.motion && a.material == b.material && a.mass == b.mass && a.shape.is(b.shape);
+  };
+  return -largest_of(static_cast<int>(bodies_.size()), kBodyBlock, -1.0, [&](std::size_t n) {
+    const Body& b = bodies_[n];
+    if (b.motion != Motion::free || (n > 0 && same(bodies_[n - 1], b))) return -1.0;
+    return -contact_time(b, materials_, speed);
+  });
 }
 
 /// Velocity Verlet (Swope et al. 1982, J. Chem. Phys. 76:637): half a kick, drift, new forces, half a kick.
@@ -94,9 +113,10 @@ void Particles::advance(double dt, std::span<const Load> loads) {
 /// unseen is told at the end.
 void Particles::note_leaps(double step) {
   if (bodies_.size() < 2) return;
-  for (std::size_t n = 0; n < bodies_.size(); ++n)
-    if (presence_[n] == Presence::here && bodies_[n].shape.balls().size() == 1)
-      leap_ = std::max(leap_, 0.5 * step * bodies_[n].velocity.norm() / bodies_[n].shape.bounding_radius());
+  leap_ = largest_of(static_cast<int>(bodies_.size()), kBodyBlock, leap_, [&](std::size_t n) {
+    if (presence_[n] != Presence::here || parts_.ball_count(static_cast<int>(n)) != 1) return 0.0;
+    return 0.5 * step * bodies_[n].velocity.norm() / bodies_[n].shape.bounding_radius();
+  });
 }
 
 /// What contacts have given beyond what they took comes from nowhere: of what went through them no more than
@@ -133,29 +153,33 @@ void Particles::pack_spheres() {
   spheres_.resize(bodies_.size());
   pushed_.resize(bodies_.size());
   packed_.resize(bodies_.size());
-  for (std::size_t n = 0; n < bodies_.size(); ++n) {
-    const Body& b = bodies_[n];
-    if (b.motion == Motion::free && moves(n)) release(n);
-    packed_[n] = b.motion == Motion::free && moves(n) && parts_.is_sphere(static_cast<int>(n));
-    if (packed_[n])
-      spheres_[n] = {vec4(b.velocity) + Vec4{0, 0, 0, 1 / b.mass},
-                     vec4(momentum_[n]) + Vec4{0, 0, 0, 1 / b.inertia[0]},
-                     __builtin_convertvector(vec4(b.position - listed_at_[n]), Vec4f), Vec4f{}};
-  }
+  for_each_block(static_cast<int>(bodies_.size()), kBodyBlock, [&](int, int begin, int end) {
+    for (std::size_t n = static_cast<std::size_t>(begin); n < static_cast<std::size_t>(end); ++n) {
+      const Body& b = bodies_[n];
+      if (b.motion == Motion::free && moves(n)) release(n);
+      packed_[n] = b.motion == Motion::free && moves(n) && parts_.is_sphere(static_cast<int>(n));
+      if (packed_[n])
+        spheres_[n] = {vec4(b.velocity) + Vec4{0, 0, 0, 1 / b.mass},
+                       vec4(momentum_[n]) + Vec4{0, 0, 0, 1 / b.inertia[0]},
+                       __builtin_convertvector(vec4(b.position - listed_at_[n]), Vec4f), Vec4f{}};
+    }
+  });
 }
 
 void Particles::unpack_spheres() {
-  for (std::size_t n = 0; n < bodies_.size(); ++n) {
-    if (!packed_[n]) continue;
-    const SphereState& s = spheres_[n];
-    Body& b = bodies_[n];
-    b.position = parts_.sphere_row(static_cast<int>(n)).centre();
-    listed_at_[n] = b.position - vec3(__builtin_convertvector(s.moved, Vec4));
-    b.velocity = vec3(s.velocity);
-    momentum_[n] = vec3(s.momentum);
-    b.angular_velocity = s.inverse_inertia() * momentum_[n];
-    turn(b.orientation, vec3(__builtin_convertvector(s.turn, Vec4)));
-  }
+  for_each_block(static_cast<int>(bodies_.size()), kBodyBlock, [&](int, int begin, int end) {
+    for (std::size_t n = static_cast<std::size_t>(begin); n < static_cast<std::size_t>(end); ++n) {
+      if (!packed_[n]) continue;
+      const SphereState& s = spheres_[n];
+      Body& b = bodies_[n];
+      b.position = parts_.sphere_row(static_cast<int>(n)).centre();
+      listed_at_[n] = b.position - vec3(__builtin_convertvector(s.moved, Vec4));
+      b.velocity = vec3(s.velocity);
+      momentum_[n] = vec3(s.momentum);
+      b.angular_velocity = s.inverse_inertia() * momentum_[n];
+      turn(b.orientation, vec3(__builtin_convertvector(s.turn, Vec4)));
+    }
+  });
 }
 
 Vec3 Particles::acceleration(std::size_t n, std::span<const Load> loads) const {
@@ -312,18 +336,15 @@ void Particles::throw_diverged() const {
 void Particles::list_candidates(double dt) {
   ScopedTimer timer(times_.listing);
   ++lists_;
-  double fastest = 0.0;
-  for (std::size_t n = 0; n < bodies_.size(); ++n) {
+  const double fastest = largest_of(static_cast<int>(bodies_.size()), kBodyBlock, 0.0, [&](std::size_t n) {
     if (packed_[n]) {
-      SphereState& s = spheres_[n];
-      s.moved = Vec4f{};
-      fastest = std::max(fastest, vec3(s.velocity).norm());
-    } else {
-      listed_at_[n] = bodies_[n].position;
-      turned_[n] = 0.0;
-      fastest = std::max(fastest, velocity_[n].norm() + spin_[n].norm() * parts_.arm(static_cast<int>(n)));
+      spheres_[n].moved = Vec4f{};
+      return vec3(spheres_[n].velocity).norm();
     }
-  }
+    listed_at_[n] = bodies_[n].position;
+    turned_[n] = 0.0;
+    return velocity_[n].norm() + spin_[n].norm() * parts_.arm(static_cast<int>(n));
+  });
   // A wider skin costs a look at more pairs in every step, in proportion; a narrower one new lists more
   // often, in inverse proportion. The cheapest, with the factor measured on settling spheres, is
   const double smallest = bodies_.empty() ? 0.0 : smallest_;

@@ -104,6 +104,7 @@ class Particles {
   /// The half of a kick that ends a sub-step of `kicked` s, and the half and the drift that begin the next,
   /// of `drifted` s; 0: there is none.
   void move_bodies(double kicked, double drifted, std::span<const Load> loads);
+  double shortest_contact(double speed) const;
   /// Into how many a sub-step has to be divided for the contacts as they were at its beginning.
   int pieces_of(double step) const;
   void collect_solids();
@@ -122,6 +123,8 @@ class Particles {
   bool moves(std::size_t n) const;
   void note_size(const Shape& shape);
   void enter_and_leave();
+  void enter_and_leave(int begin, int end, int& looks);
+  bool inside(const Body& b) const;
   void show(std::size_t n, Presence presence);
   bool place_is_free(std::size_t n) const;
   double mechanical_energy(std::size_t n) const;
@@ -163,6 +166,7 @@ class Particles {
     Vec3 velocity{0, 0, 0}, spin{0, 0, 0};
   };
   std::vector<Launch> launches_;  // of bodies that rest until they are released
+  std::vector<char> changes_;     // in which blocks of bodies some may come or go
   std::vector<char> packed_;      // which bodies spheres_ holds
   std::vector<char> pushed_;      // by solids: force_ and torque_ are not zero
   std::vector<Vec3> listed_at_;   // positions for which candidates were listed

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "dem/blocks.hpp"
 #include "dem/particles.hpp"
 
 /// Particles: bodies that enter, leave, and come back on the other side of a periodic direction.
@@ -9,6 +10,7 @@ namespace {
 
 /// Bodies that are due but find no place keep those after them waiting only so long: looks in one call.
 constexpr int kLooks = 16;
+constexpr int kPresenceBlock = 1024;  // bodies
 
 }  // namespace
 
@@ -51,10 +53,29 @@ void Particles::show(std::size_t n, Presence presence) {
   relist_ = true;
 }
 
-/// What a body brings or takes away in energy is work from outside, so that the ledger stays closed.
+bool Particles::inside(const Body& b) const {
+  return (b.position.array() >= domain_.low.array()).all() &&
+         (b.position.array() < domain_.high.array()).all();
+}
+
+/// Most bodies stay where they are: those who may come or go are looked for by all threads.
 void Particles::enter_and_leave() {
+  const int count = static_cast<int>(bodies_.size());
+  changes_.assign(static_cast<std::size_t>(block_count(count, kPresenceBlock)), false);
+  for_each_block(count, kPresenceBlock, [&](int block, int begin, int end) {
+    for (std::size_t n = static_cast<std::size_t>(begin); n < static_cast<std::size_t>(end); ++n)
+      if (presence_[n] == Presence::waiting || (presence_[n] == Presence::here && !inside(bodies_[n])))
+        changes_[static_cast<std::size_t>(block)] = true;
+  });
   int looks = 0;
-  for (std::size_t n = 0; n < bodies_.size(); ++n) {
+  for (int block = 0; block < static_cast<int>(changes_.size()); ++block)
+    if (changes_[static_cast<std::size_t>(block)])
+      enter_and_leave(block * kPresenceBlock, std::min((block + 1) * kPresenceBlock, count), looks);
+}
+
+/// What a body brings or takes away in energy is work from outside, so that the ledger stays closed.
+void Particles::enter_and_leave(int begin, int end, int& looks) {
+  for (std::size_t n = static_cast<std::size_t>(begin); n < static_cast<std::size_t>(end); ++n) {
     Body& b = bodies_[n];
     if (presence_[n] == Presence::waiting) {
       if (time_ < *b.enters_at * (1 - 1e-12) || looks == kLooks) continue;
@@ -69,9 +90,7 @@ void Particles::enter_and_leave() {
       continue;
     }
     if (presence_[n] == Presence::gone) continue;
-    if ((b.position.array() >= domain_.low.array()).all() &&
-        (b.position.array() < domain_.high.array()).all())
-      continue;
+    if (inside(b)) continue;
     const double before = mechanical_energy(n);
     bool out = false, wrapped = false;
     for (int c = 0; c < 3; ++c) {

@@ -35,7 +35,7 @@ UnresolvedSetup setup_of(const Case& c, double fluid_density) {
   s.gravity = c.environment.gravity;
   s.body_force = c.flow.body_force;
   s.kernel_width = c.coupling.kernel_width;
-  s.drag = law_of(c).beta;
+  s.drag = law_of(c).find;
   s.acts = c.coupling.exchange == GrainExchange::two_way;
   for (std::size_t d = 0; d < 3; ++d)
     s.beyond[d] = {beyond_face(c.boundary[2 * d]), beyond_face(c.boundary[2 * d + 1])};
@@ -57,11 +57,8 @@ void GrainsInFlow::map(const Particles& particles, const FlowModel& flow, const 
   for (std::size_t n = 0; n < grains.size(); ++n)
     here_[n] = particles.presence(static_cast<int>(first_ + n)) == Presence::here;
   coupling_.map(grains, here_, flow.velocity(), cut, dt, fraction_);
-  for (const GrainDrag& d : coupling_.drags()) {
-    if (!(d.inside > 0.0)) continue;
-    largest_reynolds_ = std::max(largest_reynolds_, d.reynolds);
-    least_fraction_ = std::min(least_fraction_, d.fraction);
-  }
+  largest_reynolds_ = std::max(largest_reynolds_, coupling_.extremes().reynolds);
+  least_fraction_ = std::min(least_fraction_, coupling_.extremes().fraction);
 }
 
 void GrainsInFlow::collect(const Particles& particles, std::span<Load> loads) {

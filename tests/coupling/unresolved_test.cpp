@@ -52,7 +52,7 @@ UnresolvedSetup air(const Sides& beyond) {
   s.fluid_density = 1.2;
   s.viscosity = 1.5e-5;
   s.beyond = beyond;
-  s.drag = drag::di_felice;
+  s.drag = drag::find_drag<drag::di_felice>;
   return s;
 }
 
@@ -176,7 +176,7 @@ TEST(UnresolvedCoupling, AnyNumberOfThreadsGivesTheSameBits) {
 TEST(UnresolvedCoupling, DragIsTheExactRelaxationForAnyStep) {
   const Grid grid(graded(0.01, 10, 1.0), graded(0.01, 10, 1.0), graded(0.01, 10, 1.0));
   UnresolvedSetup setup = air({kWalls, kWalls, kWalls});
-  setup.drag = drag::stokes;
+  setup.drag = drag::find_drag<drag::stokes>;
   setup.acts = false;
   setup.gravity = {0, 0, -9.81};
   setup.fluid_density = 1e-3;  // no buoyancy to speak of

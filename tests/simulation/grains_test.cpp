@@ -5,7 +5,7 @@
 #include "base/parallel.hpp"
 #include "case/load.hpp"
 #include "case/words.hpp"
-#include "coupling/unresolved/drag_law.hpp"
+#include "coupling/unresolved/grain_drag.hpp"
 #include "scratch_directory.hpp"
 #include "simulation/run.hpp"
 

@@ -14,7 +14,7 @@ namespace ejecta {
 /// Stokes' part is 1 / (6 pi^1.5 mu sigma); 1 + 3/4 Re is its reduction by inertia within 3.5 % for any
 /// Re = U sigma / nu (worked out numerically), and 2 D sigma^2 / nu the limit of strong drag by others.
 /// slip: U, m/s; viscosity: nu, m2/s; drag: D, of the other grains over density and volume, 1/s.
-inline double own_wake(double sigma, double slip, double density, double viscosity, double drag) {
+EJECTA_KERNEL double own_wake(double sigma, double slip, double density, double viscosity, double drag) {
   const double inertia = 0.75 * slip * sigma / viscosity, others = 2 * drag * sigma * sigma / viscosity;
   return 1 / (6 * std::pow(std::numbers::pi, 1.5) * density * viscosity * sigma * (1 + inertia + others));
 }

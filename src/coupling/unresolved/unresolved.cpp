@@ -6,17 +6,35 @@
 
 #include "base/parallel.hpp"
 #include "base/state_reader.hpp"
-#include "coupling/unresolved/own_wake.hpp"
 
 namespace ejecta {
 namespace {
 
-/// (1 - exp(-x)) / x
-double relaxed(double x) { return x > 1e-8 ? -std::expm1(-x) / x : 1 - 0.5 * x; }
+constexpr int kGrainBlock = 256;    // grains one thread takes at a time
+constexpr std::size_t kAhead = 12;  // grains: bodies lie far apart in memory and are asked for in time
 
-/// 1/(1 - exp(-x)) - 1/x: what of dt times a steady acceleration counts in the velocity that the drag over
-/// dt acts on, x relaxation times long: half without drag, all with much.
-double lag(double x) { return x > 1e-3 ? -1 / std::expm1(-x) - 1 / x : 0.5 + x / 12; }
+/// Numbers of a run of cells, at any address.
+using RealRun = Real __attribute__((vector_size(4 * sizeof(Real)), aligned(alignof(Real)), may_alias));
+using DoubleRun =
+    double __attribute__((vector_size(4 * sizeof(double)), aligned(alignof(double)), may_alias));
+
+EJECTA_KERNEL RealRun run_at(const Real* cells) { return *reinterpret_cast<const RealRun*>(cells); }
+
+EJECTA_KERNEL double sum_of(const RealRun& r) {
+  return (double(r[0]) + double(r[1])) + (double(r[2]) + double(r[3]));
+}
+
+/// kernel(block, begin, end) for blocks of a list of grains.
+template <class Kernel>
+void for_each_grain_block(std::size_t count, const Kernel& kernel) {
+  const int n = static_cast<int>(count), blocks = (n + kGrainBlock - 1) / kGrainBlock;
+  for_each_index(blocks, [&](int b) {
+    kernel(static_cast<std::size_t>(b), static_cast<std::size_t>(b * kGrainBlock),
+           static_cast<std::size_t>(std::min((b + 1) * kGrainBlock, n)));
+  });
+}
+
+std::size_t block_count_of(std::size_t grains) { return (grains + kGrainBlock - 1) / kGrainBlock; }
 
 }  // namespace
 
@@ -26,45 +44,50 @@ UnresolvedCoupling::UnresolvedCoupling(const Grid& grid, const UnresolvedSetup& 
     for (const double w : grid.axis(d).width) inverse_widths_[static_cast<std::size_t>(d)].push_back(1 / w);
 }
 
-/// visit(i, count, j, k, weight, weights along x) for runs of cells in plane number `plane` of a grain's own.
+/// visit(j, k, weight) for the rows of cells in plane number `plane` of a grain's own.
 template <class Visit>
-void UnresolvedCoupling::for_each_run(const Place& p, int plane, const Visit& visit) const {
-  const int k = wrapped(p.axis[2].first + plane, 2), nx = grid_.nx();
-  const double wz = p.scale * p.axis[2].weight[static_cast<std::size_t>(plane)];
-  const int first = p.axis[0].first, count = p.axis[0].count;
-  for (int b = 0; b < p.axis[1].count; ++b) {
-    const int j = wrapped(p.axis[1].first + b, 1);
-    const double w = wz * p.axis[1].weight[static_cast<std::size_t>(b)];
-    const double* along = p.axis[0].weight.data();
-    const int before = std::clamp(-first, 0, count), after = std::clamp(first + count - nx, 0, count);
-    if (before > 0) visit(first + nx, before, j, k, w, along);
-    if (const int within = count - before - after; within > 0)
-      visit(first + before, within, j, k, w, along + before);
-    if (after > 0) visit(0, after, j, k, w, along + count - after);
-  }
+void UnresolvedCoupling::for_each_row(std::size_t at, int plane, const Visit& visit) const {
+  const Place& p = places_[at];
+  const Real *along_y = weights(at, 1), of_plane = p.scale * weights(at, 2)[plane];
+  const int k = wrapped(p.first[2] + plane, 2);
+  for (int b = 0; b < p.count[1]; ++b) visit(wrapped(p.first[1] + b, 1), k, of_plane * along_y[b]);
 }
 
-/// Sums of weight * field over the cells of a grain, and that of the weights.
+/// Sums of weight * field over the cells of a grain.
 template <std::size_t kN>
-std::array<double, kN + 1> UnresolvedCoupling::gather(const Place& p,
-                                                      const std::array<ConstFieldView, kN>& fields) const {
-  std::array<double, kN + 1> sums{};
-  for (int plane = 0; plane < p.axis[2].count; ++plane)
-    for_each_run(p, plane, [&](int i, int n, int j, int k, double w, const double* along) {
-      Real weight[AxisWeights::kMost];
-      for (int a = 0; a < n; ++a) weight[a] = static_cast<Real>(along[a]);
-      if (p.near_bodies) {
-        const Real* room = room_.view().row(j, k) + i;
-        for (int a = 0; a < n; ++a) weight[a] *= room[a];
+std::array<double, kN> UnresolvedCoupling::gather(std::size_t at,
+                                                  const std::array<ConstFieldView, kN>& fields) const {
+  const Place& p = places_[at];
+  if (p.in_pieces) return gather_in_pieces<kN>(at, fields);
+  const Real *along = weights(at, 0), *room = p.near_bodies ? room_.view().origin : nullptr;
+  RealRun sums[kN] = {};
+  for (int plane = 0; plane < p.count[2]; ++plane)
+    for_each_row(at, plane, [&](int j, int k, Real w) {
+      std::ptrdiff_t cell = p.first[0] + j * fields[0].sy + k * fields[0].sz;
+      for (int a = 0; a < p.count[0]; a += kRun, cell += kRun) {
+        RealRun weight = w * run_at(along + a);
+        if (room) weight *= run_at(room + cell);
+        for (std::size_t c = 0; c < kN; ++c) sums[c] += weight * run_at(fields[c].origin + cell);
       }
-      Real part[kN + 1] = {};
-      const Real* rows[kN + 1];
-      for (std::size_t c = 0; c < kN; ++c) rows[c] = fields[c].row(j, k) + i;
-      for (int a = 0; a < n; ++a) {
-        for (std::size_t c = 0; c < kN; ++c) part[c] += weight[a] * rows[c][a];
-        part[kN] += weight[a];
+    });
+  std::array<double, kN> out;
+  for (std::size_t c = 0; c < kN; ++c) out[c] = sum_of(sums[c]);
+  return out;
+}
+
+/// Cell by cell, for rows that go on at the other end of the box, or are shorter than a run.
+template <std::size_t kN>
+std::array<double, kN> UnresolvedCoupling::gather_in_pieces(
+    std::size_t at, const std::array<ConstFieldView, kN>& fields) const {
+  const Place& p = places_[at];
+  std::array<double, kN> sums{};
+  for (int plane = 0; plane < p.count[2]; ++plane)
+    for_each_row(at, plane, [&](int j, int k, Real w) {
+      for (int a = 0; a < p.count[0]; ++a) {
+        const int i = wrapped(p.first[0] + a, 0);
+        const Real weight = w * weights(at, 0)[a] * (p.near_bodies ? room_(i, j, k) : Real(1));
+        for (std::size_t c = 0; c < kN; ++c) sums[c] += double(weight * fields[c](i, j, k));
       }
-      for (std::size_t c = 0; c <= kN; ++c) sums[c] += w * double(part[c]);
     });
   return sums;
 }
@@ -91,213 +114,319 @@ void UnresolvedCoupling::note_room(const CutCells& cut) {
   }
 }
 
-/// Near bodies the fluid around them takes what would lie inside.
-void UnresolvedCoupling::place(const Body& grain, double diameter, Place& out) const {
-  const double width = setup_.kernel_width * diameter;
-  double inside = 1, spread = 0;
-  out.density = 1;
-  for (int d = 0; d < 3; ++d) {
-    const Axis& axis = grid_.axis(d);
-    const double h = kernel_half_width(axis, grain.position[d], width),
-                 cell = axis.width[static_cast<std::size_t>(axis.cell_at(grain.position[d]))];
-    out.axis[d] = axis_weights(axis, grain.position[d], h, setup_.beyond[static_cast<std::size_t>(d)]);
-    spread += (h * h / 7 + cell * cell / 12) / 3;  // variance of the kernel and of a cell
-    double sum = 0, squares = 0;
-    for (int n = 0; n < out.axis[d].count; ++n) {
-      const double w = out.axis[d].weight[static_cast<std::size_t>(n)];
-      sum += w;
-      squares += w * w *
-                 inverse_widths_[static_cast<std::size_t>(d)]
-                                [static_cast<std::size_t>(wrapped(out.axis[d].first + n, d))];
-    }
-    inside *= sum;
-    out.density *= squares;
+void UnresolvedCoupling::note_grains(std::span<const Body> grains) {
+  for (std::size_t n = diameters_.size(); n < grains.size(); ++n) {
+    diameters_.push_back(2 * grains[n].shape.bounding_radius());
+    volumes_.push_back(grains[n].shape.mass_properties().volume);
+    masses_.push_back(grains[n].mass);
   }
-  out.scale = inside > 0 ? 1 : 0;
-  out.spread = std::sqrt(spread);
-  out.near_bodies = false;
-  if (!bodies_ || !(inside > 0)) return;
-  // Bodies do not cross periodic sides.
-  const int low[3] = {around_.i0, around_.j0, around_.k0}, high[3] = {around_.i1, around_.j1, around_.k1};
-  for (int d = 0; d < 3; ++d)
-    if (out.axis[d].first >= high[d] || out.axis[d].first + out.axis[d].count <= low[d]) return;
-  out.near_bodies = true;
-  const double open = gather<0>(out, {})[0];
-  out.scale = open > 1e-9 * inside && open > 0 ? inside / open : 0;
+  cells_.resize(grains.size(), {0, 0, 0});
+  pushed_.resize(grains.size(), Vec3(0, 0, 0));
 }
 
-/// Counting sort by plane: the grains of a plane stand in their order.
-void UnresolvedCoupling::list_planes() {
-  const std::size_t planes = static_cast<std::size_t>(grid_.nz());
-  first_.assign(planes + 1, 0);
-  const auto each = [&](const auto& visit) {
-    for (std::size_t n = 0; n < places_.size(); ++n)
-      if (places_[n].scale > 0)
-        for (int c = 0; c < places_[n].axis[2].count; ++c)
-          visit(static_cast<std::size_t>(wrapped(places_[n].axis[2].first + c, 2)), n, c);
-  };
-  each([&](std::size_t k, std::size_t, int) { ++first_[k + 1]; });
-  for (std::size_t k = 0; k < planes; ++k) first_[k + 1] += first_[k];
-  listed_.resize(static_cast<std::size_t>(first_.back()));
-  std::vector<int> next(first_.begin(), first_.end() - 1);
-  each([&](std::size_t k, std::size_t n, int plane) {
-    listed_[static_cast<std::size_t>(next[k]++)] = static_cast<int>(n) * AxisWeights::kMost + plane;
+/// Counting sort: the grains of a row stand in their order.
+void UnresolvedCoupling::sort_grains(std::span<const Body> grains, const std::vector<char>& here) {
+  for_each_grain_block(grains.size(), [&](std::size_t, std::size_t begin, std::size_t end) {
+    for (std::size_t n = begin; n < end; ++n)
+      for (int d = 0; here[n] && d < 3; ++d) {
+        int& cell = cells_[n][static_cast<std::size_t>(d)];
+        cell = cell_from(grid_.axis(d), grains[n].position[d], cell);
+      }
   });
+  const auto row_of = [&](std::size_t n) {
+    return static_cast<std::size_t>(cells_[n][2] * grid_.ny() + cells_[n][1]);
+  };
+  first_of_row_.assign(static_cast<std::size_t>(grid_.ny() * grid_.nz()) + 1, 0);
+  for (std::size_t n = 0; n < grains.size(); ++n)
+    if (here[n]) ++first_of_row_[row_of(n) + 1];
+  for (std::size_t r = 1; r < first_of_row_.size(); ++r) first_of_row_[r] += first_of_row_[r - 1];
+  listed_.resize(static_cast<std::size_t>(first_of_row_.back()));
+  std::vector<int> next(first_of_row_.begin(), first_of_row_.end() - 1);
+  for (std::size_t n = 0; n < grains.size(); ++n)
+    if (here[n]) listed_[static_cast<std::size_t>(next[row_of(n)]++)] = static_cast<int>(n);
 }
 
-/// Plane by plane in double, each plane's grains in their order.
+/// A kernel that covers more cells than there is room for makes room, once and for all.
+void UnresolvedCoupling::place_grains(std::span<const Body> grains) {
+  places_.resize(listed_.size());
+  std::vector<std::array<int, 2>> most(block_count_of(listed_.size()));  // cells, planes
+  for (std::size_t wanted = stride_;; stride_ = wanted) {
+    weights_.resize(3 * stride_ * listed_.size());
+    for_each_grain_block(listed_.size(), [&](std::size_t b, std::size_t begin, std::size_t end) {
+      most[b] = {0, 0};
+      for (std::size_t at = begin; at < end; ++at) {
+        const std::size_t later = static_cast<std::size_t>(listed_[std::min(at + kAhead, end - 1)]);
+        __builtin_prefetch(&grains[later].position);
+        __builtin_prefetch(&cells_[later]);
+        const int grain = places_[at].grain = listed_[at];
+        const int cells = place(grains[static_cast<std::size_t>(grain)], at), first = places_[at].first[2],
+                  home = cells_[static_cast<std::size_t>(grain)][2];
+        most[b][0] = std::max(most[b][0], cells);
+        most[b][1] = std::max({most[b][1], home - first, first + places_[at].count[2] - 1 - home});
+      }
+    });
+    reach_ = 0;
+    for (const auto& [cells, planes] : most) {
+      wanted = std::max(wanted, static_cast<std::size_t>((cells + kRun - 1) / kRun * kRun));
+      reach_ = std::max(reach_, planes);
+    }
+    if (wanted == stride_) return;
+  }
+}
+
+/// Returns over how many cells the grain spreads along an axis.
+int UnresolvedCoupling::place(const Body& grain, std::size_t at) {
+  Place& p = places_[at];
+  const std::size_t n = static_cast<std::size_t>(p.grain);
+  const double width = setup_.kernel_width * diameters_[n];
+  double spread = 0;
+  int most = 0;
+  p.density = p.inside = 1;
+  for (std::size_t d = 0; d < 3; ++d) {
+    const Axis& axis = grid_.axis(static_cast<int>(d));
+    const int cell = cells_[n][d];
+    const double x = grain.position[static_cast<int>(d)], h = kernel_half_width(axis, x, width, cell),
+                 size = axis.width[static_cast<std::size_t>(cell)];
+    const AxisWeights w = axis_weights(axis, x, h, setup_.beyond[d], cell);
+    spread += (h * h / 7 + size * size / 12) / 3;  // variance of the kernel and of a cell
+    double sum = 0, squares = 0;
+    for (int c = 0; c < w.count; ++c) {
+      const double weight = w.weight[static_cast<std::size_t>(c)];
+      sum += weight;
+      squares += weight * weight *
+                 inverse_widths_[d][static_cast<std::size_t>(wrapped(w.first + c, static_cast<int>(d)))];
+    }
+    p.inside *= sum;
+    p.density *= squares;
+    p.first[d] = w.first;
+    p.count[d] = w.count;
+    most = std::max(most, w.count);
+    if (static_cast<std::size_t>(w.count) > stride_) continue;
+    Real* to = weights_.data() + (3 * at + d) * stride_;
+    for (std::size_t c = 0; c < stride_; ++c)
+      to[c] = c < w.weight.size() ? static_cast<Real>(w.weight[c]) : Real(0);
+  }
+  p.spread = std::sqrt(spread);
+  p.scale = p.inside > 0;
+  p.near_bodies = false;
+  if (!(p.inside > 0)) {
+    p.inside = 0;
+    p.count = {0, 0, 0};
+  } else if (static_cast<std::size_t>(most) <= stride_) {
+    take_whole_runs(p, weights_.data() + 3 * at * stride_);
+    if (bodies_) place_near_bodies(at);
+  }
+  return most;
+}
+
+/// Rows begin farther from the end of the box where a run would go beyond it.
+void UnresolvedCoupling::take_whole_runs(Place& p, Real* along) const {
+  const int whole = (p.count[0] + kRun - 1) / kRun * kRun, nx = grid_.nx();
+  p.in_pieces = p.first[0] < 0 || p.first[0] + p.count[0] > nx || whole > nx;
+  if (p.in_pieces) return;
+  const int back = std::max(p.first[0] + whole - nx, 0);
+  std::rotate(along, along + whole - back, along + whole);
+  p.first[0] -= back;
+  p.count[0] = whole;
+}
+
+/// Near bodies the fluid around them takes what would lie inside. Bodies do not cross periodic sides.
+void UnresolvedCoupling::place_near_bodies(std::size_t at) {
+  Place& p = places_[at];
+  const int low[3] = {around_.i0, around_.j0, around_.k0}, high[3] = {around_.i1, around_.j1, around_.k1};
+  for (std::size_t d = 0; d < 3; ++d)
+    if (p.first[d] >= high[d] || p.first[d] + p.count[d] <= low[d]) return;
+  const double open = gather<1>(at, {room_.view()})[0];
+  p.near_bodies = true;
+  if (open > 1e-9 * p.inside && open > 0) {
+    p.scale = static_cast<Real>(p.inside / open);
+  } else {
+    p.inside = 0;
+    p.count = {0, 0, 0};
+  }
+}
+
+template <class Visit>
+void UnresolvedCoupling::for_each_in_plane(int k, const Visit& visit) const {
+  const int nz = grid_.nz(), ny = grid_.ny();
+  const bool all = 2 * reach_ + 1 >= nz, around = setup_.beyond[2][0] == Beyond::periodic;
+  for (int near = all ? 0 : k - reach_; near < (all ? nz : k + reach_ + 1); ++near) {
+    if (!around && (near < 0 || near >= nz)) continue;
+    const std::size_t row = static_cast<std::size_t>(wrapped(near, 2) * ny);
+    const std::size_t end = static_cast<std::size_t>(first_of_row_[row + static_cast<std::size_t>(ny)]);
+    for (std::size_t at = static_cast<std::size_t>(first_of_row_[row]); at < end; ++at) {
+      const int plane = k - places_[at].first[2];
+      for (int c = plane < 0     ? plane + nz
+                   : plane >= nz ? plane - nz
+                                 : plane;
+           c < places_[at].count[2]; c += nz)
+        visit(at, c);
+    }
+  }
+}
+
+/// Plane by plane in double, each plane's grains in the order of the list.
 template <std::size_t kN, class Values>
 void UnresolvedCoupling::scatter(const std::array<FieldView, kN>& to, const Values& values) const {
-  const int nx = grid_.nx(), ny = grid_.ny();
-  const std::size_t cells = static_cast<std::size_t>(nx) * static_cast<std::size_t>(ny);
+  const std::size_t nx = static_cast<std::size_t>(grid_.nx()),
+                    cells = nx * static_cast<std::size_t>(grid_.ny());
   for_each_index_dynamic(grid_.nz(), [&](int k) {
     thread_local std::vector<double> sums;
     sums.assign(kN * cells, 0.0);
     const ConstFieldView room = room_.view();
-    const std::size_t p = static_cast<std::size_t>(k);
-    for (int e = first_[p]; e < first_[p + 1]; ++e) {
-      const int entry = listed_[static_cast<std::size_t>(e)];
-      const std::size_t n = static_cast<std::size_t>(entry / AxisWeights::kMost);
-      const std::array<double, kN> value = values(n);
-      const Place& place = places_[n];
-      for_each_run(place, entry % AxisWeights::kMost,
-                   [&](int i, int run, int j, int, double w, const double* along) {
-                     double weight[AxisWeights::kMost];
-                     for (int a = 0; a < run; ++a)
-                       weight[a] = place.near_bodies ? along[a] * double(room(i + a, j, k)) : along[a];
-                     double* row = &sums[static_cast<std::size_t>(j) * static_cast<std::size_t>(nx) +
-                                         static_cast<std::size_t>(i)];
-                     for (std::size_t c = 0; c < kN; ++c) {
-                       double* to = row + c * cells;
-                       const double v = w * value[c];
-                       for (int a = 0; a < run; ++a) to[a] += v * weight[a];
-                     }
-                   });
+    for_each_in_plane(k, [&](std::size_t at, int plane) {
+      const Place& p = places_[at];
+      const Real* along = weights(at, 0);
+      const std::array<double, kN> value = values(at);
+      for_each_row(at, plane, [&](int j, int, Real w) {
+        double* row = sums.data() + static_cast<std::size_t>(j) * nx;
+        if (p.in_pieces) {
+          for (int a = 0; a < p.count[0]; ++a) {
+            const int i = wrapped(p.first[0] + a, 0);
+            const double weight = w * along[a] * (p.near_bodies ? room(i, j, k) : Real(1));
+            for (std::size_t c = 0; c < kN; ++c)
+              row[c * cells + static_cast<std::size_t>(i)] += weight * value[c];
+          }
+          return;
+        }
+        for (int a = 0; a < p.count[0]; a += kRun) {
+          RealRun weight = w * run_at(along + a);
+          if (p.near_bodies) weight *= run_at(room.row(j, k) + p.first[0] + a);
+          const DoubleRun wide = __builtin_convertvector(weight, DoubleRun);
+          for (std::size_t c = 0; c < kN; ++c)
+            *reinterpret_cast<DoubleRun*>(row + c * cells + p.first[0] + a) += wide * value[c];
+        }
+      });
+    });
+    for (int j = 0; j < grid_.ny(); ++j) {
+      const double area =
+          inverse_widths_[1][static_cast<std::size_t>(j)] * inverse_widths_[2][static_cast<std::size_t>(k)];
+      const double *width = inverse_widths_[0].data(), *row = sums.data() + static_cast<std::size_t>(j) * nx;
+      for (std::size_t c = 0; c < kN; ++c)
+        for_each_in_lanes(0, grid_.nx(), [=, out = to[c].row(j, k), from = row + c * cells](int i) {
+          out[i] = static_cast<Real>(area * width[i] * from[i]);
+        });
+      for (std::size_t c = 0; bodies_ && c < kN; ++c)
+        for_each_in_lanes(0, grid_.nx(), [out = to[c].row(j, k), part = room.row(j, k)](int i) {
+          out[i] = part[i] > 0 ? out[i] / part[i] : Real(0);
+        });
     }
-    std::vector<double> inverse_area;
-    for (const double y : inverse_widths_[1]) inverse_area.push_back(y * inverse_widths_[2][p]);
-    for (int j = 0; j < ny; ++j)
-      for (int i = 0; i < nx; ++i) {
-        double inverse =
-            inverse_widths_[0][static_cast<std::size_t>(i)] * inverse_area[static_cast<std::size_t>(j)];
-        if (bodies_) inverse = room_(i, j, k) > 0 ? inverse / double(room_(i, j, k)) : 0;
-        const double* cell =
-            &sums[static_cast<std::size_t>(j) * static_cast<std::size_t>(nx) + static_cast<std::size_t>(i)];
-        for (std::size_t c = 0; c < kN; ++c) to[c](i, j, k) = static_cast<Real>(inverse * cell[c * cells]);
-      }
   });
 }
 
 void UnresolvedCoupling::map(std::span<const Body> grains, const std::vector<char>& here,
                              const std::array<ConstFieldView, 3>& velocity, const CutCells& cut, double dt,
                              FluidFraction& f) {
-  const int count = static_cast<int>(grains.size());
-  places_.resize(grains.size());
-  drags_.resize(grains.size());
-  for (std::size_t n = diameters_.size(); n < grains.size(); ++n) {
-    diameters_.push_back(2 * grains[n].shape.bounding_radius());
-    volumes_.push_back(grains[n].shape.mass_properties().volume);
-  }
-  pushed_.resize(grains.size(), Vec3(0, 0, 0));
+  note_grains(grains);
   note_room(cut);
-  for_each_index(count, [&](int g) {
-    const std::size_t n = static_cast<std::size_t>(g);
-    if (here[n]) place(grains[n], diameters_[n], places_[n]);
-    else places_[n].scale = 0;
-  });
-  list_planes();
+  sort_grains(grains, here);
+  place_grains(grains);
   std::swap(f.solids_before, f.solids);
-  scatter<1>({f.solids.view()}, [&](std::size_t n) { return std::array{volumes_[n]}; });
+  scatter<1>({f.solids.view()}, [&](std::size_t at) {
+    return std::array{volumes_[static_cast<std::size_t>(places_[at].grain)]};
+  });
   if (!mapped_) f.solids_before = f.solids;  // they are there from the beginning
   mapped_ = true;
-  for_each_index(count, [&](int g) {
-    find_drag(grains[static_cast<std::size_t>(g)], static_cast<std::size_t>(g), velocity, f.solids.view(),
-              dt);
-  });
+  find_drags(grains, velocity, f.solids.view(), dt);
   const double inverse = 1 / setup_.fluid_density;
   scatter<4>({f.drag.view(), f.dragging[0].view(), f.dragging[1].view(), f.dragging[2].view()},
-             [&](std::size_t n) {
-               const double c = inverse * drags_[n].coefficient;
-               const Vec3& v = drags_[n].carried;
+             [&](std::size_t at) {
+               const double c = inverse * drags_[at].coefficient;
+               const Vec3& v = drags_[at].carried;
                return std::array{c, c * v.x(), c * v.y(), c * v.z()};
              });
 }
 
-/// m dv/dt = m a + beta (u - v) over dt with beta held: its mean drag is
-/// (m/dt) (1 - exp(-x)) (u - v - lag(x) dt a), x = beta dt / m.
-void UnresolvedCoupling::find_drag(const Body& grain, std::size_t n,
-                                   const std::array<ConstFieldView, 3>& velocity, ConstFieldView solids,
-                                   double dt) {
-  GrainDrag& out = drags_[n];
-  out = {};
-  if (!(places_[n].scale > 0)) return;
-  const auto seen = gather<4>(places_[n], {velocity[0], velocity[1], velocity[2], solids});
-  Vec3 u(seen[0], seen[1], seen[2]);
-  const double packed = seen[3], inside = seen[4];
-  if (!(inside > 0)) return;
-  u /= inside;
-  out.inside = inside;
-  out.fraction = std::max(1 - packed / inside, 0.05);
-  if (!setup_.drag) return;
-  drag::Surroundings s{diameters_[n], 0, out.fraction, setup_.fluid_density, setup_.viscosity};
-  // The coefficient of a slip as it is seen: the true one is larger by what the grain itself moves.
+void UnresolvedCoupling::find_drags(std::span<const Body> grains,
+                                    const std::array<ConstFieldView, 3>& velocity, ConstFieldView solids,
+                                    double dt) {
+  constexpr std::size_t kSize = drag::Batch::kSize;
+  static_assert(kGrainBlock % kSize == 0);
   const bool wakes = setup_.acts && grid_.active(0) && grid_.active(1) && grid_.active(2);
-  const auto coefficient = [&](double seen) {
-    s.slip = seen;
-    double beta = setup_.drag(s);
-    for (int again = 0; wakes && again < 2; ++again) {
-      const double sigma = places_[n].spread;
-      // Among many a drag law means the mean flow, which all of them make, this one too.
-      const double own = volumes_[n] * places_[n].density, others = std::max(1 - out.fraction - own, 0.0);
-      const double wake =
-          own / (own + others) *
-          own_wake(sigma, s.slip, s.density, s.viscosity, others * beta / (s.density * volumes_[n]));
-      const double larger = 1 / (1 - std::min(beta * wake, kMostWake));
-      s.slip = seen * larger;
-      beta = setup_.drag(s);
-      if (again == 1) beta *= larger;
+  const drag::Step step{setup_.fluid_density, setup_.viscosity, dt, wakes ? 1.0 : 0.0};
+  drags_.resize(places_.size());
+  std::vector<GrainExtremes> met(block_count_of(places_.size()));
+  for_each_grain_block(places_.size(), [&](std::size_t b, std::size_t begin, std::size_t end) {
+    for (; begin < end; begin += kSize) {
+      drag::Batch batch;
+      for (std::size_t n = 0; n < kSize; ++n)  // the last batch is filled with its last grain
+        look_around(grains, std::min(begin + n, end - 1), velocity, solids, batch, n);
+      if (setup_.drag) setup_.drag(step, batch);
+      for (std::size_t n = 0; n < std::min(kSize, end - begin); ++n) {
+        const Place& p = places_[begin + n];
+        drags_[begin + n] = {};
+        if (!(p.inside > 0)) continue;
+        met[b].fraction = std::min(met[b].fraction, batch.fraction[n]);
+        if (!setup_.drag) continue;
+        met[b].reynolds = std::max(met[b].reynolds, batch.reynolds[n]);
+        drags_[begin + n] = {batch.coefficient[n],
+                             grains[static_cast<std::size_t>(p.grain)].velocity +
+                                 Vec3(batch.gain[0][n], batch.gain[1][n], batch.gain[2][n])};
+      }
     }
-    return beta;
-  };
-  const Vec3 slip = u - grain.velocity;
-  double beta = coefficient(slip.norm());
-  out.reynolds = s.reynolds();
-  if (grain.motion != Motion::free) {
-    out.coefficient = beta;
-    out.carried = grain.velocity;
-    return;
+  });
+  extremes_ = {};
+  for (const GrainExtremes& m : met)
+    extremes_ = {std::max(extremes_.reynolds, m.reynolds), std::min(extremes_.fraction, m.fraction)};
+}
+
+/// What the drag on the grain of a place depends on, as number n of a batch.
+void UnresolvedCoupling::look_around(std::span<const Body> grains, std::size_t at,
+                                     const std::array<ConstFieldView, 3>& velocity, ConstFieldView solids,
+                                     drag::Batch& batch, std::size_t n) const {
+  constexpr double kLeastFraction = 0.05;
+  const Place& p = places_[at];
+  const std::size_t g = static_cast<std::size_t>(p.grain);
+  const Body &grain = grains[g],
+             &later = grains[static_cast<std::size_t>(listed_[std::min(at + kAhead, listed_.size() - 1)])];
+  __builtin_prefetch(&later.velocity);
+  __builtin_prefetch(&later.motion);
+  const auto seen = gather<4>(at, {velocity[0], velocity[1], velocity[2], solids});
+  const double inverse = p.inside > 0 ? 1 / p.inside : 0.0;
+  batch.diameter[n] = diameters_[g];
+  batch.volume[n] = volumes_[g];
+  batch.mass[n] = masses_[g];
+  batch.is_free[n] = grain.motion == Motion::free;
+  batch.fraction[n] = std::max(1 - inverse * seen[3], kLeastFraction);
+  batch.density[n] = p.density;
+  batch.spread[n] = p.spread;
+  for (int c = 0; c < 3; ++c) {
+    const std::size_t d = static_cast<std::size_t>(c);
+    batch.slip[d][n] = inverse * seen[d] - grain.velocity[c];
+    batch.acceleration[d][n] = setup_.gravity[c] + pushed_[g][c];
   }
-  const Vec3 a = setup_.gravity + pushed_[n];
-  // Once more with the mean slip of the step, where that differs.
-  constexpr double kShort = 0.01;
-  if (dt * beta > kShort * grain.mass) {
-    const Vec3 rest = -grain.mass / beta * a;
-    beta = coefficient((rest + relaxed(dt * beta / grain.mass) * (slip - rest)).norm());
-  }
-  const double x = dt * beta / grain.mass;
-  out.coefficient = beta * relaxed(x);
-  out.carried = grain.velocity + lag(x) * dt * a;
 }
 
 void UnresolvedCoupling::collect(std::span<const Body> grains, const std::vector<char>& here,
                                  const FluidFraction& f, std::span<Load> loads) {
-  drag_force_.assign(grains.size(), Vec3(0, 0, 0));
-  const std::array<ConstFieldView, 3> seen{f.seen[0].view(), f.seen[1].view(), f.seen[2].view()},
-      push{f.push[0].view(), f.push[1].view(), f.push[2].view()};
-  for_each_index(static_cast<int>(grains.size()), [&](int g) {
-    const std::size_t n = static_cast<std::size_t>(g);
-    loads[n] = Load{};
-    pushed_[n].setZero();
-    if (!here[n] || !(places_[n].scale > 0)) return;
-    const auto sums = gather<6>(places_[n], {seen[0], seen[1], seen[2], push[0], push[1], push[2]});
-    const Vec3 u(sums[0], sums[1], sums[2]), gradients(sums[3], sums[4], sums[5]);
-    const double inside = sums[6];
-    const GrainDrag& drag = drags_[n];
-    drag_force_[n] = drag.coefficient * (u - inside * drag.carried);
-    const double displaced = setup_.fluid_density * volumes_[n];
-    const Vec3 by_volume = displaced * (gradients + inside * Vec3(setup_.body_force - setup_.gravity));
-    loads[n].force = drag_force_[n] + by_volume;
-    pushed_[n] = by_volume / grains[n].mass;
+  drag_force_.resize(grains.size());
+  for_each_grain_block(grains.size(), [&](std::size_t, std::size_t begin, std::size_t end) {
+    for (std::size_t n = begin; n < end; ++n) {
+      if (here[n]) continue;
+      loads[n] = Load{};
+      drag_force_[n].setZero();
+      pushed_[n].setZero();
+    }
+  });
+  const std::array<ConstFieldView, 6> fields{f.seen[0].view(), f.seen[1].view(), f.seen[2].view(),
+                                             f.push[0].view(), f.push[1].view(), f.push[2].view()};
+  const Vec3 driven = setup_.body_force - setup_.gravity;
+  for_each_grain_block(places_.size(), [&](std::size_t, std::size_t begin, std::size_t end) {
+    for (std::size_t at = begin; at < end; ++at) {
+      const std::size_t n = static_cast<std::size_t>(listed_[at]),
+                        later = static_cast<std::size_t>(listed_[std::min(at + kAhead, end - 1)]);
+      __builtin_prefetch(&loads[later], 1);
+      __builtin_prefetch(&drag_force_[later], 1);
+      __builtin_prefetch(&pushed_[later], 1);
+      const auto sums = gather<6>(at, fields);
+      const Vec3 u(sums[0], sums[1], sums[2]), gradients(sums[3], sums[4], sums[5]);
+      const double inside = places_[at].inside;
+      drag_force_[n] = drags_[at].coefficient * (u - inside * drags_[at].carried);
+      const Vec3 by_volume = setup_.fluid_density * volumes_[n] * (gradients + inside * driven);
+      loads[n] = Load{};
+      loads[n].force = drag_force_[n] + by_volume;
+      pushed_[n] = by_volume / masses_[n];
+    }
   });
 }
 

@@ -3,7 +3,7 @@
 #include <span>
 #include <vector>
 
-#include "coupling/unresolved/drag_law.hpp"
+#include "coupling/unresolved/grain_drag.hpp"
 #include "coupling/unresolved/kernel.hpp"
 #include "dem/body.hpp"
 #include "dem/loads.hpp"
@@ -22,22 +22,26 @@ struct UnresolvedSetup {
   std::array<std::array<Beyond, 2>, 3> beyond{};
   bool acts = true;           ///< on the fluid: what a grain sees is then taken without its own wake
   double kernel_width = 3.0;  ///< in grain diameters
-  double (*drag)(const drag::Surroundings&) = nullptr;  ///< beta, kg/s; null: none
+  void (*drag)(const drag::Step&, drag::Batch&) = nullptr;  ///< of a law, grain_drag.hpp; null: none
 };
 
-/// The drag on a grain over a flow step, and where it is mapped.
+/// The drag on a grain over a flow step: coefficient * (seen - carried), N.
 struct GrainDrag {
-  double coefficient = 0;  ///< beta of the step, kg/s: the drag is coefficient * (seen - carried)
+  double coefficient = 0;  ///< beta of the step, kg/s
   Vec3 carried{0, 0, 0};   ///< m/s, the velocity of the grain that this form stands for
-  double reynolds = 0;     ///< e d |u - v| / nu at its beginning
-  double fraction = 1;     ///< of the fluid around it, e
-  double inside = 0;       ///< part of its kernel that lies in the box
+};
+
+/// What grains met at the beginning of a step.
+struct GrainExtremes {
+  double reynolds = 0;  ///< largest e d |u - v| / nu
+  double fraction = 1;  ///< least e
 };
 
 /// Two-way coupling of grains smaller than a cell with the flow (Zhou et al. 2010, model A; paper Eqs 1-3).
 /// One kernel maps volume, drag and what a grain sees, so that volume and Newton's third law are exact. Drag
 /// over a step is that of the exact relaxation of the grain with the coefficient held, so that no step is too
-/// long. Sums are taken grain by grain in their order: any number of threads gives the same bits.
+/// long. Grains are taken row by row of cells, those of a row in their order: neighbours meet in the cache,
+/// and any number of threads gives the same bits.
 class UnresolvedCoupling {
  public:
   UnresolvedCoupling(const Grid& grid, const UnresolvedSetup& setup);
@@ -50,7 +54,8 @@ class UnresolvedCoupling {
   void collect(std::span<const Body> grains, const std::vector<char>& here, const FluidFraction& f,
                std::span<Load> loads);
 
-  const std::vector<GrainDrag>& drags() const { return drags_; }
+  /// Of the last mapping.
+  const GrainExtremes& extremes() const { return extremes_; }
   /// Drag on every grain in the last collection, N.
   const std::vector<Vec3>& drag_forces() const { return drag_force_; }
   /// Sum of solids times volume over the cells, m3: that of the grains in the box.
@@ -60,26 +65,48 @@ class UnresolvedCoupling {
   void restore(std::span<const double> state, std::size_t grains);
 
  private:
+  /// Cells of a row that are read and written together.
+  static constexpr int kRun = 4;
+  /// A grain and its kernel; its weights along each axis stand in weights_.
   struct Place {
-    AxisWeights axis[3];
-    double scale = 0.0;        // of the product of the weights: 1 but near bodies; 0: not there
-    bool near_bodies = false;  // room_ counts
-    double density = 0.0;      // 1/m3, of what it leaves in cells, as it sees it
-    double spread = 0.0;       // m, standard deviation of where its force acts and its velocity is seen
+    int grain = 0;
+    std::array<int, 3> first{}, count{};  // cells; along x whole runs
+    bool near_bodies = false;             // room_ counts
+    bool in_pieces = false;               // its rows go on at the other end of the box
+    Real scale = 0;                       // of the product of the weights: 1 but near bodies
+    double inside = 0.0;                  // part of the kernel in the box; 0: the grain is not there
+    double density = 0.0;                 // 1/m3, of what it leaves in cells, as it sees it
+    double spread = 0.0;                  // m, standard deviation of where its force acts
   };
   void note_room(const CutCells& cut);
-  void place(const Body& grain, double diameter, Place& out) const;
-  void list_planes();
+  void note_grains(std::span<const Body> grains);
+  /// Lists the grains that are there by rows of cells.
+  void sort_grains(std::span<const Body> grains, const std::vector<char>& here);
+  void place_grains(std::span<const Body> grains);
+  int place(const Body& grain, std::size_t at);
+  void take_whole_runs(Place& p, Real* along) const;
+  void place_near_bodies(std::size_t at);
+  const Real* weights(std::size_t at, std::size_t axis) const {
+    return weights_.data() + (3 * at + axis) * stride_;
+  }
   template <class Visit>
-  void for_each_run(const Place& p, int plane, const Visit& visit) const;
+  void for_each_row(std::size_t at, int plane, const Visit& visit) const;
   template <std::size_t kN>
-  std::array<double, kN + 1> gather(const Place& p, const std::array<ConstFieldView, kN>& fields) const;
-  int wrapped(int i, int d) const { return i < 0 ? i + grid_.n(d) : i >= grid_.n(d) ? i - grid_.n(d) : i; }
-  /// f(cell) = sum of values(grain, n) * weight over the grains, for kN fields at once.
+  std::array<double, kN> gather(std::size_t at, const std::array<ConstFieldView, kN>& fields) const;
+  template <std::size_t kN>
+  std::array<double, kN> gather_in_pieces(std::size_t at, const std::array<ConstFieldView, kN>& fields) const;
+  /// visit(place) for the grains that reach into a plane of cells, and the plane's number in their kernels.
+  template <class Visit>
+  void for_each_in_plane(int k, const Visit& visit) const;
+  /// f(cell) = sum of values(place) * weight over the grains, for kN fields at once.
   template <std::size_t kN, class Values>
   void scatter(const std::array<FieldView, kN>& to, const Values& values) const;
-  void find_drag(const Body& grain, std::size_t n, const std::array<ConstFieldView, 3>& velocity,
-                 ConstFieldView solids, double dt);
+  void find_drags(std::span<const Body> grains, const std::array<ConstFieldView, 3>& velocity,
+                  ConstFieldView solids, double dt);
+  void look_around(std::span<const Body> grains, std::size_t at,
+                   const std::array<ConstFieldView, 3>& velocity, ConstFieldView solids, drag::Batch& batch,
+                   std::size_t n) const;
+  int wrapped(int i, int d) const { return i < 0 ? i + grid_.n(d) : i >= grid_.n(d) ? i - grid_.n(d) : i; }
 
   const Grid& grid_;
   UnresolvedSetup setup_;
@@ -87,12 +114,18 @@ class UnresolvedCoupling {
   bool bodies_ = false;  // there are
   Range3 around_;        // cells that they cut and fill
   std::array<std::vector<double>, 3> inverse_widths_;  // of the cells, 1/m
-  std::vector<double> diameters_, volumes_;            // of the grains, m, m3
+  std::vector<double> diameters_, volumes_, masses_;   // of the grains, m, m3, kg
+  std::vector<std::array<int, 3>> cells_;              // in which they are, or were when they last were there
+  std::vector<int> listed_;                            // those that are there, row by row
+  std::vector<int> first_of_row_;  // in listed_ and what follows, which stand in its order
   std::vector<Place> places_;
-  std::vector<int> first_, listed_;  // grains that reach into each plane of cells, in their order
+  std::vector<Real> weights_;  // stride_ along each axis
+  std::size_t stride_ = kRun;
+  int reach_ = 0;  // in planes, of the grains from the one they are in
   std::vector<GrainDrag> drags_;
-  std::vector<Vec3> drag_force_;
-  std::vector<Vec3> pushed_;  // m/s2, of what acts on a grain besides drag, gravity and contacts
+  GrainExtremes extremes_;
+  std::vector<Vec3> drag_force_;  // of each grain
+  std::vector<Vec3> pushed_;      // m/s2, of what acts on a grain besides drag, gravity and contacts
   bool mapped_ = false;
 };
 

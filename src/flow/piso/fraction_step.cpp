@@ -24,7 +24,7 @@ FractionStep::FractionStep(const Grid& grid, const Boundaries& boundaries, FastD
     : grid_(grid), boundaries_(boundaries), poisson_(grid, boundaries, poisson) {
   for (auto* group : {&coefficient_, &gain_})
     for (Field& f : *group) f = grid.make_field();
-  for (Field* f : {&cell_coefficient_, &rhs_, &change_}) *f = grid.make_field();
+  for (Field* f : {&inverse_root_, &rhs_, &change_}) *f = grid.make_field();
   for (int d = 0; d < 3; ++d) {
     const int n = grid.n(d);
     const std::size_t size = static_cast<std::size_t>(n + 1 + 2 * kRealLanes);
@@ -81,8 +81,8 @@ void FractionStep::predict_faces(const FluidFraction& f, Real h, ConstFieldView 
 
 /// Cells of a row take the mean of what their D-faces gained.
 template <int D>
-void FractionStep::correct_cells(FluidFraction& f, FieldView u, ConstFieldView p, ConstFieldView q, int j,
-                                 int k) const {
+void FractionStep::correct_cells(FluidFraction& f, Real kept, FieldView u, ConstFieldView p, ConstFieldView q,
+                                 int j, int k) const {
   constexpr std::size_t kD = D;
   const Metrics metrics = grid_.metrics(D);
   const std::ptrdiff_t s = stride(p, D);
@@ -100,7 +100,7 @@ void FractionStep::correct_cells(FluidFraction& f, FieldView u, ConstFieldView p
         const Real a = low[at], b = high[at];
         u_row[i] =
             (u_row[i] + a * (q_row[i] + gain[i]) + b * (q_row[i + s] + gain[i + s])) / fluid_part(solids[i]);
-        seen[i] += Real(0.5) * (a * q_row[i] / el + b * q_row[i + s] / eh);
+        seen[i] = kept * seen[i] + Real(0.5) * (a * q_row[i] / el + b * q_row[i + s] / eh);
         push[i] -= Real(0.5) * (a * (p_row[i] - p_row[i - s]) * metrics.inv_distance[at] +
                                 b * (p_row[i + s] - p_row[i]) * metrics.inv_distance[at + 1]);
       });
@@ -123,73 +123,97 @@ void FractionStep::close_faces(const std::array<FieldView, 3>& q) {
   });
 }
 
+/// 1 / sqrt(h e^2 / A) in the cells of a row
+void FractionStep::find_roots(const FluidFraction& f, Real h, int j, int k) {
+  for_each_lane(0, grid_.nx(),
+                [=, solids = f.solids.view().row(j, k), drag = f.drag.view().row(j, k),
+                 out = inverse_root_.view().row(j, k), inv_h = Real(1) / h](int i) {
+                  const Real e = fluid_part(solids[i]);
+                  out[i] = std::sqrt(e * inv_h + drag[i]) / e;
+                });
+}
+
 void FractionStep::imbalance(const FluidFraction& f, double dt, const std::array<FieldView, 3>& q,
                              FieldView out) const {
-  divergence(grid_, {q[0], q[1], q[2]}, Real(1), out);
-  const Metrics m[3] = {grid_.metrics(0), grid_.metrics(1), grid_.metrics(2)};
+  const Outflow through = outflow(grid_, {q[0], q[1], q[2]});
   const Real inv_dt = static_cast<Real>(1 / dt);
   for_each_cell(
-      grid_.range(), [=, now = f.solids.view(), before = f.solids_before.view()](int i, int j, int k) {
-        out(i, j, k) -=
-            (now(i, j, k) - before(i, j, k)) * inv_dt * m[0].volume[i] * m[1].volume[j] * m[2].volume[k];
+      grid_.range(), [ =, now = f.solids.view(), before = f.solids_before.view() ](
+                         int i, int j, int k) __attribute__((always_inline)) {
+        const Real volume = through.m[0].volume[i] * through.m[1].volume[j] * through.m[2].volume[k];
+        out(i, j, k) = through(i, j, k) - (now(i, j, k) - before(i, j, k)) * inv_dt * volume;
       });
 }
 
-void FractionStep::project(FluidFraction& f, double h, double dt, const std::array<FieldView, 3>& u,
-                           FieldView p, const std::array<FieldView, 3>& q) {
-  const Metrics m[3] = {grid_.metrics(0), grid_.metrics(1), grid_.metrics(2)};
-  const Real step = static_cast<Real>(h);
+/// Root of the sum of squares of what flows through the faces of the cells, m3/s: it tells what the balance
+/// of a cell can mean.
+double FractionStep::size_of_flow(const std::array<FieldView, 3>& q) const {
+  const Outflow through = outflow(grid_, {q[0], q[1], q[2]});
+  return std::sqrt(reduce_sum(
+      grid_.range(), [=](int i, int j, int k) __attribute__((always_inline)) {
+        const Real x = face_area<0>(through.m, i, j, k) * through.q[0](i, j, k),
+                   y = face_area<1>(through.m, i, j, k) * through.q[1](i, j, k),
+                   z = face_area<2>(through.m, i, j, k) * through.q[2](i, j, k);
+        return double(x * x + y * y + z * z);
+      }));
+}
+
+/// q -= c grad change on the lower D-faces of a row
+template <int D>
+void FractionStep::correct_faces(FieldView q, int j, int k) const {
+  constexpr std::size_t kD = D;
+  const ConstFieldView change = change_.view();
+  const std::ptrdiff_t s = stride(change, D);
+  const Real *c = coefficient_[kD].view().row(j, k), *of_row = change.row(j, k);
+  for_each_lane(0, grid_.nx() + (D == 0), [=, to = q.row(j, k), m = grid_.metrics(D)](int i) {
+    const int at = D == 0 ? i : D == 1 ? j : k;
+    to[i] -= c[i] * (of_row[i] - of_row[i - s]) * m.inv_distance[at];
+  });
+}
+
+void FractionStep::project(FluidFraction& f, bool first, double h, double dt,
+                           const std::array<FieldView, 3>& u, FieldView p,
+                           const std::array<FieldView, 3>& q) {
+  const Real step = static_cast<Real>(h), kept = first ? Real(0) : Real(1);
   for (const FieldView& c : u) boundaries_.fill_zero_gradient(c);
   boundaries_.fill_pressure(p, q, true);
-  for_each_index(grid_.nz() + 1, [&](int k) {
-    for (int j = 0; j <= grid_.ny(); ++j) {
-      if (grid_.active(0) && j < grid_.ny() && k < grid_.nz()) predict_faces<0>(f, step, u[0], p, q[0], j, k);
-      if (grid_.active(1) && k < grid_.nz()) predict_faces<1>(f, step, u[1], p, q[1], j, k);
-      if (grid_.active(2) && j < grid_.ny()) predict_faces<2>(f, step, u[2], p, q[2], j, k);
-    }
-  });
-  close_faces(q);
-  const FieldView cells = cell_coefficient_.view(), rhs = rhs_.view(), change = change_.view();
-  for_each_cell(grid_.range(), [=, solids = f.solids.view(), drag = f.drag.view()](int i, int j, int k) {
-    const Real e = fluid_part(solids(i, j, k));
-    cells(i, j, k) = step * e * e / (e + step * drag(i, j, k));
-  });
-  imbalance(f, dt, q, rhs);
-  // What flows through a cell tells what its balance can mean.
-  double scale = 0;
-  for (int d = 0; d < 3; ++d)
-    if (grid_.active(d))
-      scale += reduce_sum(grid_.range(), [&, v = q[static_cast<std::size_t>(d)]](int i, int j, int k) {
-        const double flow = double(face_area_of(grid_.metrics(), d, {i, j, k})) * double(v(i, j, k));
-        return flow * flow;
-      });
-  constexpr double kTolerance = std::max(16 * double(std::numeric_limits<Real>::epsilon()), 1e-10);
-  iterations_ = poisson_.solve({coefficient_[0].view(), coefficient_[1].view(), coefficient_[2].view()},
-                               cells, rhs, kTolerance * std::sqrt(scale), q, change);
-  boundaries_.fill_pressure(change, q, false);
-  for_each_index(grid_.nz() + 1, [&](int k) {
-    for (int j = 0; j <= grid_.ny(); ++j)
-      for (int d = 0; d < 3; ++d) {
-        if (!grid_.active(d) || (d != 1 && j == grid_.ny()) || (d != 2 && k == grid_.nz())) continue;
-        const std::size_t e = static_cast<std::size_t>(d);
-        const std::ptrdiff_t s = stride(change, d);
-        const Real *c = coefficient_[e].view().row(j, k), *f_row = change.row(j, k);
-        Real* q_row = q[e].row(j, k);
-        const Metrics metrics = m[d];
-        for_each_lane(0, grid_.nx() + (d == 0), [=](int i) {
-          const int at = d == 0 ? i : d == 1 ? j : k;
-          q_row[i] -= c[i] * (f_row[i] - f_row[i - s]) * metrics.inv_distance[at];
-        });
+  const auto for_each_row = [&](const auto& x, const auto& y, const auto& z, const auto& cells) {
+    for_each_index(grid_.nz() + 1, [&](int k) {
+      for (int j = 0; j <= grid_.ny(); ++j) {
+        const bool inside_y = j < grid_.ny(), inside_z = k < grid_.nz();
+        if (grid_.active(0) && inside_y && inside_z) x(j, k);
+        if (grid_.active(1) && inside_z) y(j, k);
+        if (grid_.active(2) && inside_y) z(j, k);
+        if (inside_y && inside_z) cells(j, k);
       }
-  });
+    });
+  };
+  for_each_row([&](int j, int k) { predict_faces<0>(f, step, u[0], p, q[0], j, k); },
+               [&](int j, int k) { predict_faces<1>(f, step, u[1], p, q[1], j, k); },
+               [&](int j, int k) { predict_faces<2>(f, step, u[2], p, q[2], j, k); },
+               [&](int j, int k) { find_roots(f, step, j, k); });
+  close_faces(q);
+  imbalance(f, dt, q, rhs_.view());
+  constexpr double kTolerance = std::max(16 * double(std::numeric_limits<Real>::epsilon()), 1e-10);
+  iterations_ =
+      poisson_.solve({coefficient_[0].view(), coefficient_[1].view(), coefficient_[2].view()},
+                     inverse_root_.view(), rhs_.view(), kTolerance * size_of_flow(q), q, change_.view());
+  boundaries_.fill_pressure(change_.view(), q, false);
+  for_each_row([&](int j, int k) { correct_faces<0>(q[0], j, k); },
+               [&](int j, int k) { correct_faces<1>(q[1], j, k); },
+               [&](int j, int k) { correct_faces<2>(q[2], j, k); },
+               [&](int j, int k) {
+                 for_each_lane(0, grid_.nx(), [to = p.row(j, k), from = change_.view().row(j, k)](int i) {
+                   to[i] += from[i];
+                 });
+               });
   boundaries_.prescribe_face_velocity(q);
-  for_each_cell(grid_.range(), [=](int i, int j, int k) { p(i, j, k) += change(i, j, k); });
   boundaries_.fill_pressure(p, q, true);
   for_each_index(grid_.nz(), [&](int k) {
     for (int j = 0; j < grid_.ny(); ++j) {
-      if (grid_.active(0)) correct_cells<0>(f, u[0], p, q[0], j, k);
-      if (grid_.active(1)) correct_cells<1>(f, u[1], p, q[1], j, k);
-      if (grid_.active(2)) correct_cells<2>(f, u[2], p, q[2], j, k);
+      if (grid_.active(0)) correct_cells<0>(f, kept, u[0], p, q[0], j, k);
+      if (grid_.active(1)) correct_cells<1>(f, kept, u[1], p, q[1], j, k);
+      if (grid_.active(2)) correct_cells<2>(f, kept, u[2], p, q[2], j, k);
     }
   });
   // Along an axis of one cell there are no faces.
@@ -201,7 +225,7 @@ void FractionStep::project(FluidFraction& f, double h, double dt, const std::arr
           const Real v =
               (to(i, j, k) + step * dragging(i, j, k)) / (fluid_part(solids(i, j, k)) + step * drag(i, j, k));
           to(i, j, k) = v;
-          seen(i, j, k) += Real(0.5) * v;
+          seen(i, j, k) = kept * seen(i, j, k) + Real(0.5) * v;
         });
   }
 }

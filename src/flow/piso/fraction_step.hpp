@@ -24,12 +24,14 @@ class FractionStep {
   FractionStep(const Grid& grid, const Boundaries& boundaries, FastDiagonalPoisson& poisson);
 
   /// m in `u`, which becomes the velocity; p, m2/s2, is the guess and then the pressure; q m/s through whole
-  /// faces. Adds half of this stage's velocity and force to f.seen and f.push. `h`, s: of the stage, `dt` of
-  /// the step. Ghosts of p by `boundaries`.
-  void project(FluidFraction& f, double h, double dt, const std::array<FieldView, 3>& u, FieldView p,
-               const std::array<FieldView, 3>& q);
+  /// faces. f.seen and f.push gain half of this stage's velocity and force, f.seen from nothing in the first
+  /// stage. `h`, s: of the stage, `dt` of the step. Ghosts of p by `boundaries`.
+  void project(FluidFraction& f, bool first, double h, double dt, const std::array<FieldView, 3>& u,
+               FieldView p, const std::array<FieldView, 3>& q);
   /// div q + de/dt, m3/s
   void imbalance(const FluidFraction& f, double dt, const std::array<FieldView, 3>& q, FieldView out) const;
+  /// What the last projection added to the pressure, m2/s2.
+  ConstFieldView change() const { return change_.view(); }
   int iterations() const { return iterations_; }  ///< of the last solution
 
  private:
@@ -42,7 +44,12 @@ class FractionStep {
   void predict_faces(const FluidFraction& f, Real h, ConstFieldView m, ConstFieldView p, FieldView q, int j,
                      int k);
   template <int D>
-  void correct_cells(FluidFraction& f, FieldView u, ConstFieldView p, ConstFieldView q, int j, int k) const;
+  void correct_faces(FieldView q, int j, int k) const;
+  template <int D>
+  void correct_cells(FluidFraction& f, Real kept, FieldView u, ConstFieldView p, ConstFieldView q, int j,
+                     int k) const;
+  void find_roots(const FluidFraction& f, Real h, int j, int k);
+  double size_of_flow(const std::array<FieldView, 3>& q) const;
   void close_faces(const std::array<FieldView, 3>& q);
 
   const Grid& grid_;
@@ -51,7 +58,7 @@ class FractionStep {
   std::array<Shares, 3> shares_;
   std::array<Field, 3> coefficient_;
   std::array<Field, 3> gain_;  // q - m of every face
-  Field cell_coefficient_, rhs_, change_;
+  Field inverse_root_, rhs_, change_;
   int iterations_ = 0;
 };
 

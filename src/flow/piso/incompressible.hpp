@@ -119,7 +119,7 @@ class Incompressible {
   void make_superficial(FluidFraction& f);
   void drag_cells(double h);
   void find_results(FluidFraction& f);
-  void add_friction(FluidFraction& f, double part);
+  void gather_momentum(FluidFraction& f, double h, bool first);
   void book_grains(const FluidFraction& f, double dt);
   void book_through(const BoundaryFlow& through, double dt);
   BoundaryFlow predict(double a, double b, double time, Real dt, CutCells& cut, double weight);
@@ -156,8 +156,6 @@ class Incompressible {
   const FluidFraction* fraction_ = nullptr;      // of which the fluid is a part since the last step
   bool superficial_ = false;                     // q_ is that of the fluid times its fraction
   double fraction_dt_ = 0;
-  Field no_pressure_;
-  std::array<Field, 3> friction_;  // div tau / rho with grains, m/s2
   Vec3 impulse_on_grains_{0, 0, 0};
   FlowTimes times_;
   FlowLedger ledger_;

@@ -1,8 +1,11 @@
 // Incompressible flow with grains smaller than a cell in it.
 #include <algorithm>
 #include <cmath>
+#include <type_traits>
 #include <utility>
+#include <vector>
 
+#include "base/row_sum.hpp"
 #include "base/stopwatch.hpp"
 #include "flow/cut_geometry.hpp"
 #include "flow/piso/incompressible.hpp"
@@ -11,10 +14,95 @@
 #include "grid/faces.hpp"
 
 namespace ejecta {
+namespace {
+
+/// div tau / rho of a row, m/s2, as nu times the Laplacian: whatever it is, what the grains get the fluid
+/// loses.
+template <bool kTurbulent>
+struct FrictionRow {
+  const Real *u, *eddy;
+  std::ptrdiff_t sy, sz;
+  Metrics x, y, z;
+  Real on_x, on_y, on_z, nu;
+  int j, k;
+
+  EJECTA_KERNEL static Real second(const Real* at, std::ptrdiff_t s, const Metrics& m, int n) {
+    return ((at[s] - at[0]) * m.inv_distance[n + 1] - (at[0] - at[-s]) * m.inv_distance[n]) * m.inv_width[n];
+  }
+  EJECTA_KERNEL Real operator()(int i) const {
+    const Real* at = u + i;
+    const Real sum = on_x * second(at, 1, x, i) + on_y * second(at, sy, y, j) + on_z * second(at, sz, z, k);
+    if constexpr (kTurbulent) return (nu + eddy[i]) * sum;
+    else return nu * sum;
+  }
+};
+
+/// use(j, k, c, friction of the row) for every row of every component of the velocity. eddy: origin null:
+/// laminar.
+template <class Use>
+void for_each_friction_row(const Grid& grid, const std::array<ConstFieldView, 3>& u, ConstFieldView eddy,
+                           double viscosity, const Use& use) {
+  const auto go = [&]<bool kTurbulent>(std::bool_constant<kTurbulent>) {
+    for_each_index(grid.nz(), [&](int k) {
+      for (int j = 0; j < grid.ny(); ++j)
+        for (std::size_t c = 0; c < 3; ++c)
+          use(j, k, c,
+              FrictionRow<kTurbulent>{u[c].row(j, k), kTurbulent ? eddy.row(j, k) : nullptr, u[c].sy, u[c].sz,
+                                      grid.metrics(0), grid.metrics(1), grid.metrics(2), Real(grid.active(0)),
+                                      Real(grid.active(1)), Real(grid.active(2)),
+                                      static_cast<Real>(viscosity), j, k});
+    });
+  };
+  eddy.origin ? go(std::true_type{}) : go(std::false_type{});
+}
+
+/// What the grains took from the fluid in a step.
+struct TakenByGrains {
+  Vec3 force{0, 0, 0};  ///< over density, m4/s2
+  double volume = 0;    ///< m3
+};
+
+/// kRoom: they take room of the fluid; else `part` of each cell is fluid.
+template <bool kRoom>
+TakenByGrains sum_taken(const Grid& grid, const FluidFraction& f, const Vec3& acceleration,
+                        ConstFieldView part) {
+  std::vector<TakenByGrains> planes(static_cast<std::size_t>(grid.nz()));
+  for_each_index(grid.nz(), [&](int k) {
+    TakenByGrains& sum = planes[static_cast<std::size_t>(k)];
+    for (int j = 0; j < grid.ny(); ++j) {
+      const double area = double(grid.metrics(1).volume[j]) * double(grid.metrics(2).volume[k]);
+      const Real *now = f.solids.view().row(j, k), *before = f.solids_before.view().row(j, k),
+                 *drag = f.drag.view().row(j, k), *open = part.row(j, k), *length = grid.metrics(0).volume;
+      for (std::size_t c = 0; c < 3; ++c) {
+        const Real *seen = f.seen[c].view().row(j, k), *dragging = f.dragging[c].view().row(j, k),
+                   *push = f.push[c].view().row(j, k);
+        const double a = acceleration[int(c)];
+        sum.force[int(c)] +=
+            area * row_sum(
+                       0, grid.nx(), [=](int i) __attribute__((always_inline)) {
+                         const double rate = double(drag[i]) * double(seen[i]) - double(dragging[i]);
+                         if constexpr (kRoom)
+                           return (rate + double(now[i]) * (double(push[i]) + a)) * double(length[i]);
+                         else return rate * double(open[i]) * double(length[i]);
+                       });
+      }
+      sum.volume += area * row_sum(0, grid.nx(), [=](int i) {
+                      return (double(now[i]) - double(before[i])) * double(length[i]);
+                    });
+    }
+  });
+  TakenByGrains all;
+  for (const TakenByGrains& plane : planes) {
+    all.force += plane.force;
+    all.volume += plane.volume;
+  }
+  return all;
+}
+
+}  // namespace
+
 void Incompressible::advance(double time, double dt, CutCells& cut, FluidFraction& f) {
   if (!fraction_step_) fraction_step_ = std::make_unique<FractionStep>(grid_, boundaries_, poisson_);
-  for (auto* group : {&f.seen, &f.push})
-    for (Field& field : *group) field.fill(0);
   const bool takes_room = f.acts && cut.empty();
   fraction_ = takes_room ? &f : nullptr;
   fraction_dt_ = dt;
@@ -23,12 +111,11 @@ void Incompressible::advance(double time, double dt, CutCells& cut, FluidFractio
   if (takes_room) {
     advance_through_grains(time, dt, cut, f);
   } else {
+    for (Field& field : f.seen) field.fill(0);
     grains_ = f.acts ? &f : nullptr;
     advance(time, dt, cut);
     grains_ = nullptr;
     find_results(f);
-    boundaries_.fill_velocity(views(u_), views(q_));
-    add_friction(f, 1.0);
   }
   book_grains(f, dt);
 }
@@ -65,52 +152,30 @@ void Incompressible::advance_through_grains(double time, double dt, CutCells& cu
   for (Field* field : {&f.solids, &f.drag, &f.dragging[0], &f.dragging[1], &f.dragging[2]})
     boundaries_.fill_zero_gradient(field->view());
 
-  const ConstFieldView now = f.solids.view(), before = f.solids_before.view();
-  const auto gather = [&](Real stage, std::size_t c, ConstFieldView old, ConstFieldView u, Real a, Real b) {
-    const Real acceleration = static_cast<Real>(setup_.acceleration[int(c)]);
-    for_each_cell(
-        grid_.range(), [=, m = u_star_[c].view(), friction = friction_[c].view()](int i, int j, int k) {
-          const Real s = now(i, j, k);
-          m(i, j, k) += a * (Real(1) - before(i, j, k)) * old(i, j, k) + b * (Real(1) - s) * u(i, j, k) +
-                        stage * ((Real(1) - s) * acceleration - s * friction(i, j, k));
-        });
-  };
-  {
-    const BoundaryFlow through = predict_increment(time, dt);
-    book_through(through, dt);
-    add_friction(f, kStageWeight);
-    ScopedTimer timer(times_.momentum);
-    for (std::size_t c = 0; c < 3; ++c) gather(h, c, u_[c].view(), u_[c].view(), Real(1), Real(0));
-  }
+  book_through(predict_increment(time, dt), dt);
+  gather_momentum(f, dt, true);
   {
     ScopedTimer timer(times_.boundaries);
     boundaries_.update(time + dt);
   }
   {
     ScopedTimer timer(times_.pressure);
-    fraction_step_->project(f, dt, dt, views(u_star_), p_.view(), views(q_));
+    fraction_step_->project(f, true, dt, dt, views(u_star_), p_.view(), views(q_));
   }
   book_pressure(p_.view(), kStageWeight, dt);
   std::swap(u_, u_star_);
   std::swap(u_old_, u_star_);
-  phi_ = p_;
 
-  {
-    const BoundaryFlow through = predict_increment(time + dt, 0.5 * dt);
-    book_through(through, dt);
-    add_friction(f, kStageWeight);
-    ScopedTimer timer(times_.momentum);
-    for (std::size_t c = 0; c < 3; ++c)
-      gather(Real(0.5) * h, c, u_old_[c].view(), u_[c].view(), Real(0.5), Real(0.5));
-  }
+  book_through(predict_increment(time + dt, 0.5 * dt), dt);
+  gather_momentum(f, 0.5 * dt, false);
   {
     ScopedTimer timer(times_.pressure);
-    fraction_step_->project(f, 0.5 * dt, dt, views(u_star_), p_.view(), views(q_));
+    fraction_step_->project(f, false, 0.5 * dt, dt, views(u_star_), p_.view(), views(q_));
   }
   book_pressure(p_.view(), kStageWeight, dt);
   std::swap(u_, u_star_);
-  for_each_cell(grid_.range(), [p = p_.view(), first = phi_.view()](int i, int j, int k) {
-    p(i, j, k) = Real(0.5) * (p(i, j, k) + first(i, j, k));
+  for_each_cell(grid_.range(), [p = p_.view(), change = fraction_step_->change()](int i, int j, int k) {
+    p(i, j, k) -= Real(0.5) * change(i, j, k);
   });
   boundaries_.fill_pressure(p_.view(), views(q_), true);
 
@@ -130,10 +195,8 @@ BoundaryFlow Incompressible::predict_increment(double time, double h) {
     if (setup_.source) evaluate_source(time);
   }
   ScopedTimer timer(times_.momentum);
-  if (no_pressure_.size() == 0) no_pressure_ = grid_.make_field();
   MomentumTerms t = momentum_terms();
   t.old = t.u;
-  t.pressure = no_pressure_.view();
   t.a = 0;
   t.b = 1;
   t.dt = static_cast<Real>(h);
@@ -144,35 +207,29 @@ BoundaryFlow Incompressible::predict_increment(double time, double h) {
   return through;
 }
 
-/// div tau / rho of the velocity as it is, as nu times the Laplacian: whatever it is, what the grains get the
-/// fluid loses. `part` of it acts on the grains.
-void Incompressible::add_friction(FluidFraction& f, double part) {
-  if (friction_[0].size() == 0)
-    for (Field& field : friction_) field = grid_.make_field();
-  const Metrics m[3] = {grid_.metrics(0), grid_.metrics(1), grid_.metrics(2)};
-  const Real nu = static_cast<Real>(setup_.viscosity);
-  const Real share = static_cast<Real>(part);
-  const ConstFieldView eddy = turbulence_ ? turbulence_->eddy_viscosity() : ConstFieldView{};
-  const bool active[3] = {grid_.active(0), grid_.active(1), grid_.active(2)};
-  for (std::size_t c = 0; c < 3; ++c) {
-    const ConstFieldView u = u_[c].view();
-    for_each_cell(
-        grid_.range(), [ =, push = f.push[c].view(), out = friction_[c].view() ](
-                           int i, int j, int k) __attribute__((always_inline)) {
-          const Real* at = u.row(j, k) + i;
-          Real sum = 0;
-          const auto add = [&](const Metrics& d, int n, std::ptrdiff_t s) __attribute__((always_inline)) {
-            sum += ((at[s] - at[0]) * d.inv_distance[n + 1] - (at[0] - at[-s]) * d.inv_distance[n]) *
-                   d.inv_width[n];
-          };
-          if (active[0]) add(m[0], i, 1);
-          if (active[1]) add(m[1], j, u.sy);
-          if (active[2]) add(m[2], k, u.sz);
-          const Real stress = (eddy.origin ? nu + eddy(i, j, k) : nu) * sum;
-          out(i, j, k) = stress;
-          push(i, j, k) += share * stress;
+/// Of the increment of a stage of h (s) makes the fluid's momentum before pressure and drag. Friction on the
+/// grains' part of a cell acts on them.
+void Incompressible::gather_momentum(FluidFraction& f, double h, bool first) {
+  ScopedTimer timer(times_.momentum);
+  const Real stage = static_cast<Real>(h), kept = first ? Real(0) : Real(1);
+  const Real old = first ? Real(1) : Real(0.5), here = first ? Real(0) : Real(0.5);
+  const std::array<ConstFieldView, 3> from = std::as_const(*this).views(first ? u_ : u_old_);
+  const auto gather = [&](int j, int k, std::size_t c, const auto& friction) {
+    for_each_lane(
+        0, grid_.nx(), [
+          =, m = u_star_[c].view().row(j, k), push = f.push[c].view().row(j, k), u = u_[c].view().row(j, k),
+          before = f.solids_before.view().row(j, k), now = f.solids.view().row(j, k),
+          from = from[c].row(j, k), acceleration = static_cast<Real>(setup_.acceleration[int(c)])
+        ](int i) __attribute__((always_inline)) {
+          const Real s = now[i], stress = friction(i);
+          m[i] += old * (Real(1) - before[i]) * from[i] + here * (Real(1) - s) * u[i] +
+                  stage * ((Real(1) - s) * acceleration - s * stress);
+          push[i] = kept * push[i] + Real(kStageWeight) * stress;
         });
-  }
+  };
+  for_each_friction_row(grid_, std::as_const(*this).views(u_),
+                        turbulence_ ? turbulence_->eddy_viscosity() : ConstFieldView{}, setup_.viscosity,
+                        gather);
 }
 
 /// Drag over a stage of h, implicit in the velocity of the cells: for grains that are too few for the
@@ -193,6 +250,16 @@ void Incompressible::drag_cells(double h) {
 void Incompressible::find_results(FluidFraction& f) {
   const Metrics m[3] = {grid_.metrics(0), grid_.metrics(1), grid_.metrics(2)};
   boundaries_.fill_pressure(p_.view(), views(q_), true);
+  boundaries_.fill_velocity(views(u_), views(q_));
+  const auto rub = [&](int j, int k, std::size_t c, const auto& friction) {
+    for_each_lane(
+        0, grid_.nx(), [ =, push = f.push[c].view().row(j, k) ](int i) __attribute__((always_inline)) {
+          push[i] = friction(i);
+        });
+  };
+  for_each_friction_row(grid_, std::as_const(*this).views(u_),
+                        turbulence_ ? turbulence_->eddy_viscosity() : ConstFieldView{}, setup_.viscosity,
+                        rub);
   for (int d = 0; d < 3; ++d) {
     const std::size_t c = static_cast<std::size_t>(d);
     if (!f.acts)
@@ -203,7 +270,7 @@ void Incompressible::find_results(FluidFraction& f) {
     const std::ptrdiff_t s = stride(p_.view(), d);
     for_each_cell(grid_.range(),
                   [=, to = f.push[c].view(), p = p_.view(), metrics = m[d]](int i, int j, int k) {
-                    to(i, j, k) = -cell_gradient(p.row(j, k) + i, s, metrics, d == 0 ? i : d == 1 ? j : k);
+                    to(i, j, k) -= cell_gradient(p.row(j, k) + i, s, metrics, d == 0 ? i : d == 1 ? j : k);
                   });
   }
 }
@@ -213,21 +280,10 @@ void Incompressible::book_grains(const FluidFraction& f, double dt) {
   ScopedTimer timer(times_.ledger);
   impulse_on_grains_.setZero();
   if (!f.acts) return;
-  const Metrics m[3] = {grid_.metrics(0), grid_.metrics(1), grid_.metrics(2)};
-  const ConstFieldView solids = f.solids.view(), drag = f.drag.view(), part = cut_flow_.carried();
   const bool room = fraction_ != nullptr;
-  for (std::size_t c = 0; c < 3; ++c) {
-    const double acceleration = setup_.acceleration[int(c)];
-    impulse_on_grains_[int(c)] =
-        dt * setup_.density *
-        reduce_sum(grid_.range(), [=, seen = f.seen[c].view(), dragging = f.dragging[c].view(),
-                                   push = f.push[c].view()](int i, int j, int k) {
-          double rate = double(drag(i, j, k)) * double(seen(i, j, k)) - double(dragging(i, j, k));
-          if (room) rate += double(solids(i, j, k)) * (double(push(i, j, k)) + acceleration);
-          return rate * double(part(i, j, k)) * double(m[0].volume[i]) * double(m[1].volume[j]) *
-                 double(m[2].volume[k]);
-        });
-  }
+  const TakenByGrains taken = room ? sum_taken<true>(grid_, f, setup_.acceleration, cut_flow_.carried())
+                                   : sum_taken<false>(grid_, f, setup_.acceleration, cut_flow_.carried());
+  impulse_on_grains_ = dt * setup_.density * taken.force;
   ledger_.impulse_on_solids += impulse_on_grains_;
   if (!room) return;
   // What came in must be what the grains made room for.
@@ -242,12 +298,8 @@ void Incompressible::book_grains(const FluidFraction& f, double dt) {
       in += std::max(flow, 0.0);
     });
   }
-  const double taken = reduce_sum(grid_.range(), [=, before = f.solids_before.view()](int i, int j, int k) {
-    return (double(solids(i, j, k)) - double(before(i, j, k))) * double(m[0].volume[i]) *
-           double(m[1].volume[j]) * double(m[2].volume[k]);
-  });
-  ledger_.mass_through_boundaries += setup_.density * (dt * net + taken);
-  ledger_.mass_in += setup_.density * (dt * in + std::abs(taken));
+  ledger_.mass_through_boundaries += setup_.density * (dt * net + taken.volume);
+  ledger_.mass_in += setup_.density * (dt * in + std::abs(taken.volume));
 }
 
 /// Momentum that crossed the boundaries in half a step.

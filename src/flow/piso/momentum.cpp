@@ -78,7 +78,7 @@ BoundaryFlow predict(const Grid& grid, const MomentumTerms& t, std::vector<Bound
     Real* out = t.out[C].row(j, k);
     const Real step = t.b * t.dt, acceleration = t.acceleration[C];
     const Real base_a = t.increment_only ? Real(0) : t.a, base_b = t.increment_only ? Real(0) : t.b;
-    const Real *now = t.u[C].row(j, k), *p = t.pressure.row(j, k);
+    const Real *now = t.u[C].row(j, k), *p = t.pressure.origin ? t.pressure.row(j, k) : nullptr;
     const Real* old = base_a == Real(0) ? now : t.old[C].row(j, k);  // not needed: not fetched either
     const Real inv_jk = m[1].inv_volume[j] * m[2].inv_volume[k];
     const std::ptrdiff_t s = stride(t.pressure, C);
@@ -96,8 +96,9 @@ BoundaryFlow predict(const Grid& grid, const MomentumTerms& t, std::vector<Bound
     };
     using Yes = std::true_type;
     using No = std::false_type;
-    if (source) grid.active(C) ? finish(Yes{}, Yes{}) : finish(Yes{}, No{});
-    else grid.active(C) ? finish(No{}, Yes{}) : finish(No{}, No{});
+    const bool pressed = p && grid.active(C);
+    if (source) pressed ? finish(Yes{}, Yes{}) : finish(Yes{}, No{});
+    else pressed ? finish(No{}, Yes{}) : finish(No{}, No{});
     if (C == 0 && grid.axisymmetric()) {
       // - tau_theta_theta / r, tau = 2 nu u_r / r (nu u_r / r without the transposed gradient), implicit:
       // next to the axis it is stiffer than any other term.

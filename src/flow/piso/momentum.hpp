@@ -16,7 +16,7 @@ namespace ejecta {
 struct MomentumTerms {
   std::array<ConstFieldView, 3> old, u;
   std::array<ConstFieldView, 3> face_velocity;  ///< q, divergence-free
-  ConstFieldView pressure;                      ///< p / rho, m2/s2
+  ConstFieldView pressure;                      ///< p / rho, m2/s2; origin null: none
   ConstFieldView eddy_viscosity;                ///< m2/s; origin null: laminar
   std::array<ConstFieldView, 3> source;         ///< m/s2; origin null: none
   std::array<FieldView, 3> out;

@@ -71,21 +71,6 @@ void correct_along(const Grid& grid, const Metrics& m, ConstFieldView phi, Real 
   });
 }
 
-/// Net volume flow out of cell (i, j, k), m3/s.
-struct Outflow {
-  std::array<ConstFieldView, 3> q;
-  Metrics m[3];
-  Real operator()(int i, int j, int k) const {  // q is zero along directions of a single cell
-    return face_area<0>(m, i + 1, j, k) * q[0](i + 1, j, k) - face_area<0>(m, i, j, k) * q[0](i, j, k) +
-           face_area<1>(m, i, j, k) * (q[1](i, j + 1, k) - q[1](i, j, k)) +
-           face_area<2>(m, i, j, k) * (q[2](i, j, k + 1) - q[2](i, j, k));
-  }
-};
-
-Outflow outflow(const Grid& grid, const std::array<ConstFieldView, 3>& q) {
-  return {q, {grid.metrics(0), grid.metrics(1), grid.metrics(2)}};
-}
-
 }  // namespace
 
 void face_velocities(const Grid& grid, const std::array<ConstFieldView, 3>& u_star, ConstFieldView p,

@@ -1,6 +1,7 @@
 #pragma once
 #include <array>
 
+#include "flow/stencil.hpp"
 #include "grid/grid.hpp"
 
 /// The collocated projection: u_star -> face velocities -> pressure increment -> divergence-free faces and
@@ -14,6 +15,21 @@ namespace ejecta {
 /// ten cells by 5 %).
 void face_velocities(const Grid& grid, const std::array<ConstFieldView, 3>& u_star, ConstFieldView p,
                      Real filter_time, const std::array<FieldView, 3>& q);
+
+/// Net volume flow out of cell (i, j, k), m3/s.
+struct Outflow {
+  std::array<ConstFieldView, 3> q;
+  Metrics m[3];
+  EJECTA_KERNEL Real operator()(int i, int j, int k) const {  // q is zero along directions of a single cell
+    return face_area<0>(m, i + 1, j, k) * q[0](i + 1, j, k) - face_area<0>(m, i, j, k) * q[0](i, j, k) +
+           face_area<1>(m, i, j, k) * (q[1](i, j + 1, k) - q[1](i, j, k)) +
+           face_area<2>(m, i, j, k) * (q[2](i, j, k + 1) - q[2](i, j, k));
+  }
+};
+
+inline Outflow outflow(const Grid& grid, const std::array<ConstFieldView, 3>& q) {
+  return {q, {grid.metrics(0), grid.metrics(1), grid.metrics(2)}};
+}
 
 /// rhs = net volume flow out of each cell / dt.
 void divergence(const Grid& grid, const std::array<ConstFieldView, 3>& q, Real dt, FieldView rhs);

@@ -1,7 +1,10 @@
 #include "flow/piso/variable_poisson.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <utility>
 
+#include "base/row_sum.hpp"
 #include "flow/stencil.hpp"
 
 namespace ejecta {
@@ -9,84 +12,95 @@ namespace {
 
 constexpr int kMostSteps = 200;
 
-double inner_product(const Grid& grid, ConstFieldView a, ConstFieldView b) {
-  return reduce_sum(grid.range(),
-                    [=](int i, int j, int k) { return double(a(i, j, k)) * double(b(i, j, k)); });
-}
+/// The sum over the faces of a cell. Along an axis of one cell the coefficient is nothing.
+struct FlowInto {
+  std::array<ConstFieldView, 3> c;
+  ConstFieldView f;
+  Metrics m[3];
+  template <int D>
+  EJECTA_KERNEL Real through(const Real* at, const Real* coefficient, std::ptrdiff_t s, int n) const {
+    return m[D].inv_distance[n + 1] * coefficient[s] * (at[s] - at[0]) -
+           m[D].inv_distance[n] * coefficient[0] * (at[0] - at[-s]);
+  }
+  EJECTA_KERNEL Real operator()(int i, int j, int k) const {
+    const Real *at = f.row(j, k) + i, *cx = c[0].row(j, k) + i;
+    const Real x = face_area<0>(m, i + 1, j, k) * m[0].inv_distance[i + 1] * cx[1] * (at[1] - at[0]) -
+                   face_area<0>(m, i, j, k) * m[0].inv_distance[i] * cx[0] * (at[0] - at[-1]);
+    const Real y = face_area<1>(m, i, j, k) * through<1>(at, c[1].row(j, k) + i, f.sy, j);
+    const Real z = face_area<2>(m, i, j, k) * through<2>(at, c[2].row(j, k) + i, f.sz, k);
+    return x + y + z;
+  }
+};
 
 }  // namespace
 
 VariablePoisson::VariablePoisson(const Grid& grid, const Boundaries& boundaries,
                                  FastDiagonalPoisson& constant)
     : grid_(grid), boundaries_(boundaries), constant_(constant) {
-  for (Field* f : {&residual_, &z_, &direction_, &image_}) *f = grid.make_field();
+  for (Field* f : {&z_, &direction_, &image_}) *f = grid.make_field();
 }
 
-void VariablePoisson::apply(const std::array<ConstFieldView, 3>& faces, ConstFieldView f,
-                            FieldView out) const {
-  const Metrics m[3] = {grid_.metrics(0), grid_.metrics(1), grid_.metrics(2)};
-  const bool x = grid_.active(0), y = grid_.active(1), z = grid_.active(2);
-  for_each_cell(
-      grid_.range(), [=](int i, int j, int k) __attribute__((always_inline)) {
-        const Real here = f(i, j, k);
-        Real sum = 0;
-        if (x)
-          sum +=
-              face_area<0>(m, i + 1, j, k) * m[0].inv_distance[i + 1] * faces[0](i + 1, j, k) *
-                  (f(i + 1, j, k) - here) -
-              face_area<0>(m, i, j, k) * m[0].inv_distance[i] * faces[0](i, j, k) * (here - f(i - 1, j, k));
-        if (y)
-          sum += face_area<1>(m, i, j, k) *
-                 (m[1].inv_distance[j + 1] * faces[1](i, j + 1, k) * (f(i, j + 1, k) - here) -
-                  m[1].inv_distance[j] * faces[1](i, j, k) * (here - f(i, j - 1, k)));
-        if (z)
-          sum += face_area<2>(m, i, j, k) *
-                 (m[2].inv_distance[k + 1] * faces[2](i, j, k + 1) * (f(i, j, k + 1) - here) -
-                  m[2].inv_distance[k] * faces[2](i, j, k) * (here - f(i, j, k - 1)));
-        out(i, j, k) = sum;
-      });
-}
-
-/// z = c^-1/2 L^-1 c^-1/2 r
-void VariablePoisson::precondition(ConstFieldView cells) {
-  const FieldView z = z_.view();
-  const ConstFieldView r = residual_.view();
-  for_each_cell(grid_.range(),
-                [=](int i, int j, int k) { z(i, j, k) = r(i, j, k) / std::sqrt(cells(i, j, k)); });
-  constant_.solve(z, z);
-  for_each_cell(grid_.range(), [=](int i, int j, int k) { z(i, j, k) /= std::sqrt(cells(i, j, k)); });
-}
-
-int VariablePoisson::solve(const std::array<ConstFieldView, 3>& faces, ConstFieldView cells,
-                           ConstFieldView rhs, double tolerance, const std::array<FieldView, 3>& q,
-                           FieldView phi) {
-  const FieldView r = residual_.view(), z = z_.view(), d = direction_.view(), image = image_.view();
-  for_each_cell(grid_.range(), [=](int i, int j, int k) {
-    r(i, j, k) = rhs(i, j, k);
-    phi(i, j, k) = 0;
+/// Whole registers are computed, and what is in cells is added up while the row is at hand.
+template <class Compute, class Value>
+double VariablePoisson::sum_rows(const Compute& compute, const Value& value) const {
+  const int nx = grid_.nx();
+  return reduce_sum({0, 1, 0, grid_.ny(), 0, grid_.nz()}, [&](int, int j, int k) {
+    for_each_lane(
+        0, nx, [&](int i) __attribute__((always_inline)) { compute(i, j, k); });
+    return row_sum(
+        0, nx, [&](int i) __attribute__((always_inline)) { return value(i, j, k); });
   });
+}
+
+/// z = c^-1/2 L^-1 c^-1/2 r; returns -r z.
+double VariablePoisson::precondition(ConstFieldView inverse_roots, ConstFieldView r) {
+  const FieldView z = z_.view();
+  for_each_cell(grid_.range(),
+                [=](int i, int j, int k) { z(i, j, k) = r(i, j, k) * inverse_roots(i, j, k); });
+  constant_.solve(z, z);
+  return -sum_rows([=](int i, int j, int k) { z(i, j, k) *= inverse_roots(i, j, k); },
+                   [=](int i, int j, int k) { return double(r(i, j, k)) * double(z(i, j, k)); });
+}
+
+/// Puts into image_ what the equation makes of the direction; returns the negative product of the two.
+double VariablePoisson::apply(const std::array<ConstFieldView, 3>& faces) {
+  const FlowInto inflow{faces, direction_.view(), {grid_.metrics(0), grid_.metrics(1), grid_.metrics(2)}};
+  const FieldView out = image_.view();
+  return -sum_rows(
+      [=](int i, int j, int k) __attribute__((always_inline)) { out(i, j, k) = inflow(i, j, k); },
+      [=](int i, int j, int k) { return double(inflow.f(i, j, k)) * double(out(i, j, k)); });
+}
+
+int VariablePoisson::solve(const std::array<ConstFieldView, 3>& faces, ConstFieldView inverse_roots,
+                           FieldView r, double tolerance, const std::array<FieldView, 3>& q, FieldView phi) {
   double before = 0, least = 1e300;
-  left_ = std::sqrt(inner_product(grid_, r, r));
+  left_ = std::sqrt(reduce_sum(grid_.range(),
+                               [=](int i, int j, int k) { return double(r(i, j, k)) * double(r(i, j, k)); }));
   for (int n = 0; n < kMostSteps; ++n) {
     // Where nothing but round-off is left the residual grows again.
-    if (!(left_ > tolerance) || left_ > 2 * least) return n;
+    const bool done = !(left_ > tolerance) || left_ > 2 * least;
+    const double now = done ? 0.0 : precondition(inverse_roots, r);
     least = std::min(least, left_);
-    precondition(cells);
-    const double now = -inner_product(grid_, r, z);
+    if (n == 0) {
+      std::swap(direction_, z_);
+      for_each_cell(grid_.range(), [=](int i, int j, int k) { phi(i, j, k) = 0; });
+    }
     if (!(now > 0)) return n;
-    const Real beta = n == 0 ? Real(0) : static_cast<Real>(now / before);
-    for_each_cell(grid_.range(), [=](int i, int j, int k) { d(i, j, k) = z(i, j, k) + beta * d(i, j, k); });
+    const FieldView d = direction_.view();
+    if (n > 0)
+      for_each_cell(grid_.range(), [=, z = z_.view(), beta = static_cast<Real>(now / before)](
+                                       int i, int j, int k) { d(i, j, k) = z(i, j, k) + beta * d(i, j, k); });
     boundaries_.fill_pressure(d, q, false);
-    apply(faces, d, image);
-    const double curvature = -inner_product(grid_, d, image);
+    const double curvature = apply(faces);
     if (!(curvature > 0)) return n;
     const Real alpha = static_cast<Real>(now / curvature);
-    for_each_cell(grid_.range(), [=](int i, int j, int k) {
-      phi(i, j, k) += alpha * d(i, j, k);
-      r(i, j, k) -= alpha * image(i, j, k);
-    });
+    left_ = std::sqrt(sum_rows(
+        [=, image = image_.view()](int i, int j, int k) {
+          phi(i, j, k) += alpha * d(i, j, k);
+          r(i, j, k) -= alpha * image(i, j, k);
+        },
+        [=](int i, int j, int k) { return double(r(i, j, k)) * double(r(i, j, k)); }));
     before = now;
-    left_ = std::sqrt(inner_product(grid_, r, r));
   }
   return kMostSteps;
 }
