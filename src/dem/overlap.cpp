@@ -215,7 +215,7 @@ Overlap overlap_half_space(const Polytope& a, const Vec3& normal, double offset)
   return o;
 }
 
-/// Separating vectors (Chung & Wang 1996, Proc. ACM Symp. Virtual Reality Software: 33): where the two points
+/// Separating vectors (Chung & Wang 1996): where the two points
 /// farthest along the vector do not prove it, it is turned away from their connection.
 bool stand_apart(const Polytope& a, const Polytope& b, const Mat3& rotation, const Vec3& translation,
                  Vec3& along) {
