@@ -24,6 +24,15 @@ function place(p: SortParticle, time: number, sort: SortResult): [number, number
   return [x, p.y, top + 0.5 * v.gravity_m_s2 * flown * flown];
 }
 
+/** Classes to be ejected in warm colours, those to be kept in cold ones: numbers of `bodyColour`. */
+function classColours(sort: SortResult): number[] {
+  const warm = [1, 3, 4];
+  const cold = [0, 2, 5];
+  const next = { ejected: 0, kept: 0 };
+  return sort.classes.map((c) =>
+    c.belongs_in === "ejected" ? warm[next.ejected++ % 3]! : cold[next.kept++ % 3]!);
+}
+
 /** The machine from above and from the side, moving. */
 export function sortView(sort: SortResult): HTMLElement {
   const v = sort.view;
@@ -33,14 +42,14 @@ export function sortView(sort: SortResult): HTMLElement {
   const side = h("canvas", { class: "sort-stage", role: "img", "aria-label": "The sorter from the side" });
   const player = new Player(0, v.length_m / v.belt_speed_m_s + 0.15);
   player.time = Math.min(player.end, (v.camera_m + 0.1) / v.belt_speed_m_s + 0.1);
-  const ejectKinds = sort.classes.map((c) => c.belongs_in === "ejected");
+  const colours = classColours(sort);
   const box = { low: -0.02, high: v.stand_off_m + 0.2 };
 
   const draw = (): void => {
     const dark = isDark();
     const css = getComputedStyle(document.documentElement);
     const [ink, muted, line, surface] = ["--ink", "--muted", "--line", "--surface"].map((n) => css.getPropertyValue(n));
-    const colour = (p: SortParticle): string => bodyColour(ejectKinds[p.kind] ? 1 : 0, dark);
+    const colour = (p: SortParticle): string => bodyColour(colours[p.kind]!, dark);
     const start = (canvas: HTMLCanvasElement, heightOfWidth: number): [CanvasRenderingContext2D, number] => {
       const width = canvas.clientWidth || 1100;
       const ratio = devicePixelRatio || 1;
@@ -159,8 +168,8 @@ export function sortView(sort: SortResult): HTMLElement {
   });
   document.addEventListener("themechange", draw);
   new ResizeObserver(follow).observe(above);
-  const key = h("p", { class: "sort-key" }, ...sort.classes.map((c) =>
-    h("span", {}, h("span", { class: "swatch", "data-body": c.belongs_in === "ejected" ? 1 : 0 }), ` ${c.name} `)));
+  const key = h("p", { class: "sort-key" }, ...sort.classes.map((c, n) =>
+    h("span", {}, h("span", { class: "swatch", "data-body": colours[n]! }), ` ${c.name} `)));
   return h("figure", { class: "sort-view" }, h("div", { class: "sort-controls" }, play, slider, clock), key, above, side,
     h("figcaption", {}, "Ten times slower than it is. Frames: objects that the controller shoots at; discs at the jets: open valves."));
 }
