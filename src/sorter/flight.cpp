@@ -200,9 +200,9 @@ FlightEnd FastFlight::finish(Track track, double gain) const {
 }
 
 double AirCoefficients::of(const FeedParticle& p) const {
+  if (p.prototype->sharp) return sharp;
   const double at = std::clamp((p.size() - small) / (large - small), 0.0, 1.0);
-  return p.prototype->sharp ? sharp_small + at * (sharp_large - sharp_small)
-                            : round_small + at * (round_large - round_small);
+  return round_small + at * (round_large - round_small);
 }
 
 double AirCoefficients::widening(const FeedParticle& p, double half_radius) const {

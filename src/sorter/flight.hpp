@@ -11,15 +11,16 @@
 namespace ejecta {
 
 /// How the pressure of the air on a surface follows from the jet there: density times the square of the
-/// normal velocity times a coefficient. From resolved runs of particles of two sizes (docs/theory/sorter.md),
-/// of which none is a shot of a sorter; linear between them, constant beyond.
+/// normal velocity times a coefficient. Fitted to 40 resolved gains of seven single bodies of two sizes on
+/// and beside the jet (tests/sorter/resolved_gains.csv, docs/theory/sorter.md), of which none is a shot of a
+/// sorter.
 struct AirCoefficients {
-  double small = 10e-3, large = 20e-3;              ///< m, the two sizes
-  double sharp_small = 0.824, sharp_large = 0.778;  ///< of flat faces with edges: front and back together
-  double round_small = 0.690, round_large = 0.797;  ///< of round surfaces
+  double sharp = 0.865;                 ///< of flat faces with edges: front and back together
+  double small = 10e-3, large = 20e-3;  ///< m, two sizes of round bodies; linear between, constant beyond
+  double round_small = 0.677, round_large = 0.815;  ///< of round surfaces
   double front = 2.0 / 3.0;      ///< part of it on what faces the air; the rest pulls at what faces away
-  double sharp_widening = 1.24;  ///< of the jet on a face: the air leaves it at its edges
-  double round_spread = 1.3;     ///< the air follows a round surface, and so spreads with its radius
+  double sharp_widening = 1.30;  ///< of the jet on a face: the air leaves it at its edges
+  double round_spread = 1.22;    ///< the air follows a round surface, and so spreads with its radius
 
   double of(const FeedParticle& particle) const;
   /// How much wider than a free jet of that half radius (m) the jet on the particle is, with the same

@@ -107,13 +107,19 @@ class Study(unittest.TestCase):
         self.assertEqual(self.result("parts"), self.result("whole"))
 
     def test_kills_lose_nothing(self):
-        case = self.case(count=16, end="2 s", keep="true")
+        self.kill_at_random(0.4, count=16, end="2 s", keep="true")
+
+    def test_kills_lose_nothing_of_many(self):
+        self.kill_at_random(0.0004 * TASKS, count=TASKS, end="10 ms")
+
+    def kill_at_random(self, longest, **study):
+        case = self.case(**study)
         self.ejecta("study", case, "--out", "whole")
         draw = random.Random(5)
         for _ in range(KILLS):
             driver = subprocess.Popen([EJECTA, "study", case, "--out", "killed", "-q"], cwd=self.folder,
                                       stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-            time.sleep(draw.uniform(0.0, 0.4))
+            time.sleep(draw.uniform(0.0, longest))
             children = subprocess.run(["pgrep", "-P", str(driver.pid)], capture_output=True, text=True).stdout.split()
             victim = driver.pid if draw.random() < 0.6 or not children else int(draw.choice(children))
             try:
