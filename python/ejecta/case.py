@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any, Mapping, Union
 
 from . import _core
+from .errors import CaseError
 from .quantity import Array, Quantity
 
 
@@ -102,7 +103,10 @@ class Case:
     """
 
     def __init__(self, tables: Mapping[str, Any]) -> None:
-        solver = str(tables.get("flow", {}).get("solver", "incompressible"))
+        solver = tables.get("flow", {}).get("solver")
+        if solver is None:
+            solver = Case.load(tables["extends"])._tree.solver() if "extends" in tables else "incompressible"
+        solver = str(solver)
         self._tree = _core.CaseTree(_Schema(solver).document(tables), "Case({...})")
         self._file: str | None = None
         self._changes: dict[str, str | None] = {}  # path -> TOML, as --set takes it
@@ -132,10 +136,20 @@ class Case:
 
     def update(self, values: Mapping[str, Any]) -> None:
         """Sets several keys at once: all, or none where one is wrong."""
-        schema = _Schema(self._tree.solver())
+        schema = _Schema(str(values.get("flow.solver", self._tree.solver())))
         changes = {path: schema.toml(value, path) for path, value in values.items()}
         self._tree.set([(path, toml, f"case[{json.dumps(path)}]") for path, toml in changes.items()])
         self._changes.update(changes)
+
+    __iter__ = None  # `in` and list() would count from 0
+
+    def __contains__(self, path: str) -> bool:
+        """Whether there is such a key."""
+        try:
+            self._tree.get(path)
+        except CaseError:
+            return False
+        return True
 
     def __delitem__(self, path: str) -> None:
         """Back to the default."""

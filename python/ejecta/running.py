@@ -128,6 +128,8 @@ def _run(kind, case, out, overwrite, resume, threads, callback, fields):
     directory = os.fspath(out) if out is not None else None
     if resume and not directory:
         raise ValueError("resume goes on with the run in a directory: say which, e.g. out=\"my-case.run\"")
+    if threads < 0:
+        raise ValueError(f"threads={threads}\n  expected: 0 for all cores, or how many")
     raw = _core.run(case._tree, kind, directory, overwrite, resume, threads, callback, fields,
                     _command(kind, case, directory) if directory else "", _note)
     return Result(raw, directory)

@@ -25,9 +25,10 @@ constexpr double kCellsOfGrains = 3.0;  // least width of a cell, in diameters
 constexpr double kWideKernel = 6.0;     // diameters: over several cells of less width
 constexpr double kDilute = 0.01;        // solids: more is not one grain alone
 
-/// Rosin-Rammler and sieves spread over decades: beyond the largest hundredth, by number, single grains are.
+/// Lognormal, Rosin-Rammler and sieves spread over decades: beyond the largest hundredth, by number, single
+/// grains are.
 double largest_size(const GrainsSpec& g, const SizeDistribution& sizes) {
-  if (g.sizes == SizeLaw::lognormal || g.sizes == SizeLaw::one) return g.size;
+  if (g.sizes == SizeLaw::one) return g.size;
   return sizes.quantile(g.sizes == SizeLaw::uniform ? 1.0 : 0.99);
 }
 
@@ -113,7 +114,8 @@ void check_place(const Case& c, const GrainsSpec& g, const SizeDistribution& siz
                 "\"lattice\", or fewer grains", "packing = \"lattice\"");
 }
 
-void check_cells(const Case& c, const GrainsSpec& g, const SizeDistribution& sizes, const std::string& at,
+/// True where they suit.
+bool check_cells(const Case& c, const GrainsSpec& g, const SizeDistribution& sizes, const std::string& at,
                  Findings& found) {
   double narrowest = 1e300;
   for (std::size_t a = 0; a < 3; ++a) {
@@ -123,8 +125,8 @@ void check_cells(const Case& c, const GrainsSpec& g, const SizeDistribution& siz
     for (const double x : centres) narrowest = std::min(narrowest, widest_cell(axis, x, x));
   }
   const double d = largest_size(g, sizes), cells = narrowest / d;
-  if (cells >= kCellsOfGrains * (1 - 1e-9) || narrowest > 1e299) return;
-  if (c.coupling.kernel_width >= kWideKernel && cells >= 1.0) return;
+  if (cells >= kCellsOfGrains * (1 - 1e-9) || narrowest > 1e299) return true;
+  if (c.coupling.kernel_width >= kWideKernel && cells >= 1.0) return true;
   found.error(
       at + "size",
       fmt::format("cells of {:.4g} mm are {:.2f} grains of {:.4g} mm wide: below {:.0f} a grain is no "
@@ -134,6 +136,58 @@ void check_cells(const Case& c, const GrainsSpec& g, const SizeDistribution& siz
                   "to one grain a cell, a wider kernel: coupling.kernel_width of {:.0f}",
                   kWideKernel),
       fmt::format("[coupling] kernel_width = {:.0f}", kWideKernel));
+  return false;
+}
+
+/// A kernel reaches over so many cells at most (coupling/unresolved/kernel.hpp).
+constexpr double kMostCells = 10.0;
+
+void check_kernel(const Case& c, const GrainsSpec& g, const SizeDistribution& sizes, Findings& found) {
+  double narrowest = 1e300;
+  for (const AxisSpec& axis : c.grid.axis)
+    for (const std::vector<double> centres = cell_centres(axis); const double x : centres)
+      if (centres.size() > 1) narrowest = std::min(narrowest, widest_cell(axis, x, x));
+  const double most = (kMostCells - 1.0) * narrowest / largest_size(g, sizes);
+  if (c.coupling.kernel_width <= most) return;
+  found.error("coupling.kernel_width",
+              fmt::format("a grain of \"{}\" would spread over more than {:.0f} cells", g.name, kMostCells),
+              fmt::format("at most {:.3g} grain diameters in these cells", most),
+              fmt::format("kernel_width = {:.3g}", std::floor(most)));
+}
+
+/// The fluid that light grains push aside weighs more than they: their exchange, which takes the gradient of
+/// pressure as it was a step before, and no added mass, swings up.
+constexpr double kLeastDensityRatio = 0.1;
+
+void check_weight(const Case& c, const GrainsSpec& g, const std::string& at, Findings& found) {
+  double density = g.density.value_or(1e300);
+  for (const MaterialSpec& m : c.materials)
+    if (!g.density && (m.name == g.material || (g.material.empty() && &m == &c.materials.front())))
+      density = m.density;
+  const double least = kLeastDensityRatio * c.fluid.density;
+  if (c.coupling.exchange != GrainExchange::two_way || g.held || density >= least) return;
+  found.error(
+      at + "density",
+      fmt::format("grains of {:.4g} kg/m3 in a fluid of {:.4g} kg/m3: lighter than a tenth of it they "
+                  "need their added mass, which is not computed",
+                  density, c.fluid.density),
+      fmt::format("at least {:.4g} kg/m3, or grains that do not act on the flow", least),
+      "[coupling] exchange = \"one-way\"");
+}
+
+/// Bodies see walls; through all else grains fly.
+void warn_of_open_sides(const Case& c, Findings& found) {
+  constexpr const char* kSides[] = {"x_min", "x_max", "y_min", "y_max", "z_min", "z_max"};
+  if (!c.walls.empty() || std::ranges::all_of(c.grains, [](const GrainsSpec& g) { return g.held; })) return;
+  for (std::size_t f = 0; f < 6; ++f) {
+    const BoundaryType type = c.boundary[f].type;
+    if (cell_centres(c.grid.axis[f / 2]).size() < 2) continue;
+    if (type != BoundaryType::slip && type != BoundaryType::symmetry) continue;
+    found.warning(
+        fmt::format("boundary.{}.type", kSides[f]),
+        fmt::format("grains that come to a {} side fly out through it: only walls hold them", word(type)),
+        "a plane as [[wall]] there, if they are to bounce", "[[wall]] kind = \"plane\"");
+  }
 }
 
 /// Where the flow is periodic, grains have to be.
@@ -173,6 +227,7 @@ void sense_grains(const Case& c, Findings& found) {
     found.error("fluid.viscosity", "drag laws of grains need a viscosity", "a viscosity, more than 0",
                 "viscosity = \"1.8e-5 Pa s\"");
   if (flows) check_periodic_sides(c, found);
+  if (flows) warn_of_open_sides(c, found);
   for (std::size_t n = 0; n < c.grains.size(); ++n) {
     const GrainsSpec& g = c.grains[n];
     const std::string at = fmt::format("grains.{}.", n);
@@ -189,7 +244,12 @@ void sense_grains(const Case& c, Findings& found) {
     if (found.errors() > before) continue;
     const SizeDistribution& sizes = *drawn;
     check_place(c, g, sizes, at, found);
-    if (flows) check_cells(c, g, sizes, at, found);
+    if (flows && check_cells(c, g, sizes, at, found)) check_kernel(c, g, sizes, found);
+    if (flows) check_weight(c, g, at, found);
+    if (g.from >= c.run.end_time)
+      found.error(at + "from",
+                  fmt::format("the run ends at {:.4g} ms, before they come", 1e3 * c.run.end_time),
+                  "a time before run.end_time", "from = \"0 s\"");
     const bool alone =
         c.coupling.drag == GrainDragLaw::schiller_naumann || c.coupling.drag == GrainDragLaw::stokes;
     if (flows && alone && g.region && g.over == 0.0 && packing_of(c, g, sizes) > kDilute)

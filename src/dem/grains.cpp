@@ -16,9 +16,10 @@
 namespace ejecta {
 namespace {
 
-constexpr std::uint64_t kSizes = 1, kPlaces = 2;  // streams of random numbers
-constexpr int kTries = 2000;                      // of a grain that looks for its place
-constexpr double kRarest = 0.00135;               // beyond three standard deviations none is drawn
+/// Streams of random numbers: of a group kStreams more than of the one before it.
+constexpr std::uint64_t kSizes = 1, kPlaces = 2, kStreams = 2;
+constexpr int kTries = 2000;         // of a grain that looks for its place
+constexpr double kRarest = 0.00135;  // beyond three standard deviations none is drawn
 
 /// The key that says how many there are.
 std::string amount_of(const GrainsSpec& g) {
@@ -34,8 +35,9 @@ InputError no_room(const GrainsSpec& g, const std::string& what) {
 
 double volume_of(double d) { return std::numbers::pi / 6 * d * d * d; }
 
-std::vector<double> draw_sizes(const GrainsSpec& g, double density, const std::string& folder) {
-  const CounterRandom random(static_cast<std::uint64_t>(g.seed), kSizes);
+std::vector<double> draw_sizes(const GrainsSpec& g, std::uint64_t group, double density,
+                               const std::string& folder) {
+  const CounterRandom random(static_cast<std::uint64_t>(g.seed), kSizes + kStreams * group);
   const SizeDistribution distribution = size_distribution(g, folder);
   const auto draw = [&](std::size_t n) {
     return distribution.quantile(std::clamp(random.uniform(n), kRarest, 1.0 - kRarest));
@@ -57,7 +59,7 @@ std::vector<double> draw_sizes(const GrainsSpec& g, double density, const std::s
 }
 
 /// A face-centred cubic lattice, stretched to fill the region: points of a simple one of which every other is
-/// taken. From its lower end up.
+/// taken. Where there are more of these than grains some stay empty, evenly.
 std::vector<Vec3> lattice_places(const GrainsSpec& g, std::size_t count, double d, const Domain& domain) {
   const Vec3 low = (*g.region)[0], edges = (*g.region)[1] - low;
   bool periodic[3];
@@ -85,7 +87,7 @@ std::vector<Vec3> lattice_places(const GrainsSpec& g, std::size_t count, double 
   std::vector<Vec3> places;
   for (int k = 0; k < n[2]; ++k)
     for (int j = 0; j < n[1]; ++j)
-      for (int i = (j + k) % 2; i < n[0] && places.size() < count; i += 2) {
+      for (int i = (j + k) % 2; i < n[0]; i += 2) {
         Vec3 x;
         const int at[3] = {i, j, k};
         for (int a = 0; a < 3; ++a)
@@ -96,6 +98,8 @@ std::vector<Vec3> lattice_places(const GrainsSpec& g, std::size_t count, double 
       }
   if (places.size() < count)
     throw no_room(g, fmt::format("only {} of {} fit into the region as a lattice", places.size(), count));
+  for (std::size_t n = 0; n < count; ++n) places[n] = places[n * places.size() / count];
+  places.resize(count);
   return places;
 }
 
@@ -180,17 +184,17 @@ class RandomPlaces {
   std::uint64_t next_ = 0;
 };
 
-void add_group(const GrainsSpec& g, const std::string& folder, const Particles& particles,
-               std::vector<Body>& made) {
+void add_group(const GrainsSpec& g, std::uint64_t group, const std::string& folder,
+               const Particles& particles, std::vector<Body>& made) {
   const int material = particles.materials().index(g.material);
   const double density = g.density.value_or(particles.materials().spec(material).density);
-  const std::vector<double> sizes = draw_sizes(g, density, folder);
+  const std::vector<double> sizes = draw_sizes(g, group, density, folder);
   if (sizes.empty())
     throw InputError(
         fmt::format("grains \"{}\": not even one makes up what is asked for", g.name),
         {.key = amount_of(g), .expected = "more of them, or smaller ones", .example = "count = 100"});
   const double largest = *std::max_element(sizes.begin(), sizes.end());
-  const CounterRandom random(static_cast<std::uint64_t>(g.seed), kPlaces);
+  const CounterRandom random(static_cast<std::uint64_t>(g.seed), kPlaces + kStreams * group);
   std::vector<Vec3> places;
   if (g.packing == GrainPacking::lattice) {
     places = lattice_places(g, sizes.size(), largest, particles.domain());
@@ -236,7 +240,7 @@ void add_group(const GrainsSpec& g, const std::string& folder, const Particles& 
 
 void add_grains(const Case& c, Particles& particles) {
   std::vector<Body> made;
-  for (const GrainsSpec& g : c.grains) add_group(g, folder_of(c), particles, made);
+  for (std::size_t n = 0; n < c.grains.size(); ++n) add_group(c.grains[n], n, folder_of(c), particles, made);
   for (Body& body : made) particles.add(std::move(body));
 }
 

@@ -6,8 +6,9 @@ namespace ejecta {
 namespace {
 
 const std::map<std::string, std::string> kFieldUnits{
-    {"velocity", "m/s"}, {"pressure", "Pa"},   {"density", "kg/m3"},      {"k", "m2/s2"},
-    {"omega", "1/s"},    {"epsilon", "m2/s3"}, {"eddy_viscosity", "m2/s"}};
+    {"velocity", "m/s"},        {"pressure", "Pa"},   {"density", "kg/m3"},       {"k", "m2/s2"},
+    {"omega", "1/s"},           {"epsilon", "m2/s3"}, {"eddy_viscosity", "m2/s"}, {"void_fraction", ""},
+    {"drag_coefficient", "1/s"}};
 
 ResultField copied_field(const CellField& f, const Grid& grid) {
   ResultField copy{f.name, kFieldUnits.at(f.name), f.components, {}};

@@ -16,9 +16,9 @@ AxisWeights axis_weights(const Axis& axis, double x, double h, const std::array<
     return w;
   }
   const bool periodic = beyond[0] == Beyond::periodic;
-  if (beyond[0] == Beyond::mirror) x = std::max(x, low);  // dented into a wall
+  if (!periodic && (x <= low - h || x >= high + h)) return w;  // gone, by whatever side
+  if (beyond[0] == Beyond::mirror) x = std::max(x, low);       // dented into a wall
   if (beyond[1] == Beyond::mirror) x = std::min(x, high);
-  if (!periodic && (x <= low - h || x >= high + h)) return w;
   const auto face = [&](int i) {  // of the axis continued beyond a periodic side
     const int turns = i < 0 ? -1 : i > axis.n ? 1 : 0;
     return axis.face[static_cast<std::size_t>(i - turns * axis.n)] + turns * (high - low);
