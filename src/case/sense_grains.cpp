@@ -60,14 +60,29 @@ void check_amount(const GrainsSpec& g, const std::string& at, Findings& found) {
               "one of `count`, `mass` and `solids_fraction`", "count = 10000");
 }
 
+/// kg/m3: its own, or its material's; without a name that is the first.
+double density_of(const Case& c, const GrainsSpec& g) {
+  if (g.density) return *g.density;
+  for (const MaterialSpec& m : c.materials)
+    if (m.name == g.material || g.material.empty()) return m.density;
+  return 0.0;  // no such material: told elsewhere
+}
+
+/// m, of the cells along the axes that have more than one; 1e300: none has.
+double narrowest_cell(const Case& c) {
+  double narrowest = 1e300;
+  for (const AxisSpec& axis : c.grid.axis)
+    if (const std::vector<double> centres = cell_centres(axis); centres.size() > 1)
+      for (const double x : centres) narrowest = std::min(narrowest, widest_cell(axis, x, x));
+  return narrowest;
+}
+
 /// Part of the region that is grains.
 double packing_of(const Case& c, const GrainsSpec& g, const SizeDistribution& sizes) {
   if (g.solids_fraction) return *g.solids_fraction;
   const Vec3 edges = (*g.region)[1] - (*g.region)[0];
-  double density = g.density.value_or(0.0);
-  for (const MaterialSpec& m : c.materials)
-    if (!g.density && (m.name == g.material)) density = m.density;
-  const double volume = g.mass ? *g.mass / density : g.count * std::numbers::pi / 6 * sizes.mean_power(3);
+  const double volume =
+      g.mass ? *g.mass / density_of(c, g) : g.count * std::numbers::pi / 6 * sizes.mean_power(3);
   return volume / edges.prod();
 }
 
@@ -117,14 +132,7 @@ void check_place(const Case& c, const GrainsSpec& g, const SizeDistribution& siz
 /// True where they suit.
 bool check_cells(const Case& c, const GrainsSpec& g, const SizeDistribution& sizes, const std::string& at,
                  Findings& found) {
-  double narrowest = 1e300;
-  for (std::size_t a = 0; a < 3; ++a) {
-    const AxisSpec& axis = c.grid.axis[a];
-    const std::vector<double> centres = cell_centres(axis);
-    if (centres.size() < 2) continue;
-    for (const double x : centres) narrowest = std::min(narrowest, widest_cell(axis, x, x));
-  }
-  const double d = largest_size(g, sizes), cells = narrowest / d;
+  const double narrowest = narrowest_cell(c), d = largest_size(g, sizes), cells = narrowest / d;
   if (cells >= kCellsOfGrains * (1 - 1e-9) || narrowest > 1e299) return true;
   if (c.coupling.kernel_width >= kWideKernel && cells >= 1.0) return true;
   found.error(
@@ -143,11 +151,7 @@ bool check_cells(const Case& c, const GrainsSpec& g, const SizeDistribution& siz
 constexpr double kMostCells = 10.0;
 
 void check_kernel(const Case& c, const GrainsSpec& g, const SizeDistribution& sizes, Findings& found) {
-  double narrowest = 1e300;
-  for (const AxisSpec& axis : c.grid.axis)
-    for (const std::vector<double> centres = cell_centres(axis); const double x : centres)
-      if (centres.size() > 1) narrowest = std::min(narrowest, widest_cell(axis, x, x));
-  const double most = (kMostCells - 1.0) * narrowest / largest_size(g, sizes);
+  const double most = (kMostCells - 1.0) * narrowest_cell(c) / largest_size(g, sizes);
   if (c.coupling.kernel_width <= most) return;
   found.error("coupling.kernel_width",
               fmt::format("a grain of \"{}\" would spread over more than {:.0f} cells", g.name, kMostCells),
@@ -160,11 +164,7 @@ void check_kernel(const Case& c, const GrainsSpec& g, const SizeDistribution& si
 constexpr double kLeastDensityRatio = 0.1;
 
 void check_weight(const Case& c, const GrainsSpec& g, const std::string& at, Findings& found) {
-  double density = g.density.value_or(1e300);
-  for (const MaterialSpec& m : c.materials)
-    if (!g.density && (m.name == g.material || (g.material.empty() && &m == &c.materials.front())))
-      density = m.density;
-  const double least = kLeastDensityRatio * c.fluid.density;
+  const double density = density_of(c, g), least = kLeastDensityRatio * c.fluid.density;
   if (c.coupling.exchange != GrainExchange::two_way || g.held || density >= least) return;
   found.error(
       at + "density",

@@ -2,16 +2,15 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <map>
 #include <numeric>
 #include <optional>
 #include <stdexcept>
+#include <utility>
 
 #include "base/joined_sets.hpp"
 #include "base/thread_budget.hpp"
 #include "dem/particles.hpp"
-#include "sorter/launch.hpp"
 #include "sorter/particle_class.hpp"
 #include "sorter/plan_view.hpp"
 
@@ -247,9 +246,8 @@ std::vector<FlightEnd> Company::fly_together(std::span<const std::size_t> member
     }
   }
   for (std::size_t n = 0; n < g.size(); ++n) {
-    Track& track = ends[n].track;
-    track.end = g.state(n);
-    FlightEnd end = flight_.finish(track, g.gain(n));
+    ends[n].track.end = g.state(n);
+    FlightEnd end = flight_.finish(std::move(ends[n].track), g.gain(n));
     if (passed[n]) {
       passed[n]->track = std::move(end.track);
       end = std::move(*passed[n]);
