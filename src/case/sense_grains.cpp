@@ -217,9 +217,10 @@ void sense_grains(const Case& c, Findings& found) {
   if (c.grains.empty()) return;
   check_file_names(c.grains, "grains", found);
   const bool flows = c.flow.solver != FlowSolver::none;
-  if (flows && !is_incompressible(c))
+  if (c.flow.solver == FlowSolver::compressible)
     found.error("grains.0", fmt::format("flow.solver \"{}\" does not know grains", word(c.flow.solver)),
-                "an incompressible flow, or none", "[flow] solver = \"incompressible\"");
+                "\"compressible-piso\", \"incompressible\" or \"none\"",
+                "[flow] solver = \"compressible-piso\"");
   if (flows && c.grid.geometry == Geometry::axisymmetric)
     found.error("grains.0", "axisymmetric geometry cannot hold grains", "cartesian geometry",
                 "geometry = \"cartesian\"");

@@ -9,7 +9,7 @@ namespace ejecta {
 
 struct FluidFraction {
   explicit FluidFraction(const Grid& grid) {
-    for (Field* f : {&solids_before, &solids, &drag}) *f = grid.make_field();
+    for (Field* f : {&solids_before, &solids, &drag, &work}) *f = grid.make_field();
     for (auto* group : {&dragging, &seen, &push})
       for (Field& f : *group) f = grid.make_field();
   }
@@ -17,10 +17,12 @@ struct FluidFraction {
   /// Part of each cell that is grains (of the fluid that bodies leave of it), at the beginning and at the end
   /// of the step: 1 - e, which keeps its digits where grains are few.
   Field solids_before, solids;
-  /// Drag coefficient of the grains in a cell over its volume and the fluid's density, 1/s, and that times
-  /// the velocity of the grains, m/s2: the fluid gains dragging - drag u.
+  /// Drag coefficient of the grains in a cell over its volume and the density of the fluid at rest, 1/s, and
+  /// that times the velocity of the grains, m/s2: the fluid gains dragging - drag u.
   Field drag;
   std::array<Field, 3> dragging;
+  /// What drag worked on the grains in the step before, J/m3; of gas alone, whose energy it is.
+  Field work;
 
   bool acts = true;  ///< on the fluid; false: only the results are wanted
 

@@ -413,7 +413,8 @@ FieldsOnGrid CoupledModel::fields() {
 
 std::vector<NamedField> CoupledModel::state_fields() {
   std::vector<NamedField> all = flow_ ? flow_->state_fields() : std::vector<NamedField>{};
-  if (grains_) all.push_back({"solids", &grains_->fraction().solids});
+  if (grains_)
+    for (const NamedField& f : grains_->state_fields()) all.push_back(f);
   return all;
 }
 

@@ -37,6 +37,7 @@ UnresolvedSetup setup_of(const Case& c, double fluid_density) {
   s.kernel_width = c.coupling.kernel_width;
   s.drag = law_of(c).find;
   s.acts = c.coupling.exchange == GrainExchange::two_way;
+  s.works = s.acts && c.flow.solver == FlowSolver::compressible_piso;
   for (std::size_t d = 0; d < 3; ++d)
     s.beyond[d] = {beyond_face(c.boundary[2 * d]), beyond_face(c.boundary[2 * d + 1])};
   return s;
@@ -56,7 +57,7 @@ void GrainsInFlow::map(const Particles& particles, const FlowModel& flow, const 
   here_.resize(grains.size());
   for (std::size_t n = 0; n < grains.size(); ++n)
     here_[n] = particles.presence(static_cast<int>(first_ + n)) == Presence::here;
-  coupling_.map(grains, here_, flow.velocity(), cut, dt, fraction_);
+  coupling_.map(grains, here_, flow.velocity(), flow.densities(), cut, dt, fraction_);
   largest_reynolds_ = std::max(largest_reynolds_, coupling_.extremes().reynolds);
   least_fraction_ = std::min(least_fraction_, coupling_.extremes().fraction);
 }
@@ -85,6 +86,12 @@ std::vector<std::string> GrainsInFlow::warnings() const {
         fmt::format("grains take up to {:.3f} of the room between them; with bodies in the box the fluid "
                     "is dragged by grains but not displaced",
                     1.0 - least_fraction_));
+  return all;
+}
+
+std::vector<NamedField> GrainsInFlow::state_fields() {
+  std::vector<NamedField> all{{"solids", &fraction_.solids}};
+  if (case_.flow.solver == FlowSolver::compressible_piso) all.push_back({"work", &fraction_.work});
   return all;
 }
 

@@ -32,6 +32,7 @@ class GrainsInFlow {
   double largest_reynolds() const { return largest_reynolds_; }
   double least_fraction() const { return least_fraction_; }
 
+  std::vector<NamedField> state_fields();
   std::vector<double> state() const;
   void restore(std::span<const double> state, std::size_t grains);
 

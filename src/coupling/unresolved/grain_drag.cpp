@@ -57,7 +57,8 @@ void find_drag(const Step& step, Batch& b) {
   constexpr double kShort = 0.01;  // relaxation times
   for_each_in_lanes(
       0, Batch::kSize, [&](int n) __attribute__((always_inline)) {
-        const Surroundings s{b.diameter[n], 0, b.fraction[n], step.density, step.viscosity};
+        const Surroundings s{b.diameter[n], 0, b.fraction[n], b.fluid_density[n],
+                             step.viscosity * (step.density / b.fluid_density[n])};
         const double own = b.volume[n] * b.density[n];
         const auto respond = [&](double seen) __attribute__((always_inline)) {
           return response<law>(s, seen, own, b.volume[n], b.spread[n], step.wakes);

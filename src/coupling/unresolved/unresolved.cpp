@@ -315,8 +315,8 @@ void UnresolvedCoupling::scatter(const std::array<FieldView, kN>& to, const Valu
 }
 
 void UnresolvedCoupling::map(std::span<const Body> grains, const std::vector<char>& here,
-                             const std::array<ConstFieldView, 3>& velocity, const CutCells& cut, double dt,
-                             FluidFraction& f) {
+                             const std::array<ConstFieldView, 3>& velocity, ConstFieldView density,
+                             const CutCells& cut, double dt, FluidFraction& f) {
   note_grains(grains);
   note_room(cut);
   sort_grains(grains, here);
@@ -327,7 +327,8 @@ void UnresolvedCoupling::map(std::span<const Body> grains, const std::vector<cha
   });
   if (!mapped_) f.solids_before = f.solids;  // they are there from the beginning
   mapped_ = true;
-  find_drags(grains, velocity, f.solids.view(), dt);
+  dt_ = dt;
+  find_drags(grains, {velocity[0], velocity[1], velocity[2], f.solids.view(), density}, dt);
   const double inverse = 1 / setup_.fluid_density;
   scatter<4>({f.drag.view(), f.dragging[0].view(), f.dragging[1].view(), f.dragging[2].view()},
              [&](std::size_t at) {
@@ -337,8 +338,7 @@ void UnresolvedCoupling::map(std::span<const Body> grains, const std::vector<cha
              });
 }
 
-void UnresolvedCoupling::find_drags(std::span<const Body> grains,
-                                    const std::array<ConstFieldView, 3>& velocity, ConstFieldView solids,
+void UnresolvedCoupling::find_drags(std::span<const Body> grains, const std::array<ConstFieldView, 5>& fields,
                                     double dt) {
   constexpr std::size_t kSize = drag::Batch::kSize;
   static_assert(kGrainBlock % kSize == 0);
@@ -350,7 +350,7 @@ void UnresolvedCoupling::find_drags(std::span<const Body> grains,
     for (; begin < end; begin += kSize) {
       drag::Batch batch;
       for (std::size_t n = 0; n < kSize; ++n)  // the last batch is filled with its last grain
-        look_around(grains, std::min(begin + n, end - 1), velocity, solids, batch, n);
+        look_around(grains, std::min(begin + n, end - 1), fields, batch, n);
       if (setup_.drag) setup_.drag(step, batch);
       for (std::size_t n = 0; n < std::min(kSize, end - begin); ++n) {
         const Place& p = places_[begin + n];
@@ -372,8 +372,8 @@ void UnresolvedCoupling::find_drags(std::span<const Body> grains,
 
 /// What the drag on the grain of a place depends on, as number n of a batch.
 void UnresolvedCoupling::look_around(std::span<const Body> grains, std::size_t at,
-                                     const std::array<ConstFieldView, 3>& velocity, ConstFieldView solids,
-                                     drag::Batch& batch, std::size_t n) const {
+                                     const std::array<ConstFieldView, 5>& fields, drag::Batch& batch,
+                                     std::size_t n) const {
   constexpr double kLeastFraction = 0.05;
   const Place& p = places_[at];
   const std::size_t g = static_cast<std::size_t>(p.grain);
@@ -381,8 +381,10 @@ void UnresolvedCoupling::look_around(std::span<const Body> grains, std::size_t a
              &later = grains[static_cast<std::size_t>(listed_[std::min(at + kAhead, listed_.size() - 1)])];
   __builtin_prefetch(&later.velocity);
   __builtin_prefetch(&later.motion);
-  const auto seen = gather<4>(at, {velocity[0], velocity[1], velocity[2], solids});
+  const auto seen = gather<4>(at, {fields[0], fields[1], fields[2], fields[3]});
   const double inverse = p.inside > 0 ? 1 / p.inside : 0.0;
+  batch.fluid_density[n] =
+      fields[4].origin && p.inside > 0 ? inverse * gather<1>(at, {fields[4]})[0] : setup_.fluid_density;
   batch.diameter[n] = diameters_[g];
   batch.volume[n] = volumes_[g];
   batch.mass[n] = masses_[g];
@@ -398,7 +400,7 @@ void UnresolvedCoupling::look_around(std::span<const Body> grains, std::size_t a
 }
 
 void UnresolvedCoupling::collect(std::span<const Body> grains, const std::vector<char>& here,
-                                 const FluidFraction& f, std::span<Load> loads) {
+                                 FluidFraction& f, std::span<Load> loads) {
   drag_force_.resize(grains.size());
   for_each_grain_block(grains.size(), [&](std::size_t, std::size_t begin, std::size_t end) {
     for (std::size_t n = begin; n < end; ++n) {
@@ -427,6 +429,20 @@ void UnresolvedCoupling::collect(std::span<const Body> grains, const std::vector
       loads[n].force = drag_force_[n] + by_volume;
       pushed_[n] = by_volume / masses_[n];
     }
+  });
+  if (setup_.works) find_work(grains, f);
+}
+
+/// Drag times the mean of the velocities with which a grain begins and ends the step if it meets nothing.
+void UnresolvedCoupling::find_work(std::span<const Body> grains, FluidFraction& f) const {
+  scatter<1>({f.work.view()}, [&](std::size_t at) {
+    const std::size_t n = static_cast<std::size_t>(places_[at].grain);
+    const Vec3& drag = drag_force_[n];
+    const Vec3 gain = grains[n].motion == Motion::free
+                          ? Vec3(dt_ * (drag / masses_[n] + pushed_[n] + setup_.gravity))
+                          : Vec3(0, 0, 0);
+    const double inside = places_[at].inside;
+    return std::array{inside > 0 ? dt_ / inside * drag.dot(grains[n].velocity + 0.5 * gain) : 0.0};
   });
 }
 

@@ -14,8 +14,9 @@
 namespace ejecta {
 
 struct UnresolvedSetup {
-  double fluid_density = 0.0;  ///< kg/m3
-  double viscosity = 0.0;      ///< m2/s, kinematic
+  double fluid_density = 0.0;  ///< kg/m3, of the fluid at rest
+  double viscosity = 0.0;      ///< m2/s, kinematic, at that density
+  bool works = false;          ///< what drag works on grains is the fluid's loss: of a gas with an energy
   /// m/s2: acts on the fluid as well, hidden in its hydrostatic pressure, and returns as buoyancy of grains
   Vec3 gravity{0, 0, 0};
   Vec3 body_force{0, 0, 0};  ///< m/s2 that drives the fluid like a gradient of pressure
@@ -47,11 +48,14 @@ class UnresolvedCoupling {
   UnresolvedCoupling(const Grid& grid, const UnresolvedSetup& setup);
 
   /// Fills what stands above "results" for a step of dt (s). `here`: which grains are there. velocity: of the
-  /// fluid, m/s. `cut`: cells in bodies take no grains.
+  /// fluid, m/s; density: of a gas, kg/m3, origin null: that of the fluid at rest. `cut`: cells in bodies
+  /// take no grains.
   void map(std::span<const Body> grains, const std::vector<char>& here,
-           const std::array<ConstFieldView, 3>& velocity, const CutCells& cut, double dt, FluidFraction& f);
-  /// Force on every grain over the flow step: drag, gradient of the pressure, viscous stress, buoyancy.
-  void collect(std::span<const Body> grains, const std::vector<char>& here, const FluidFraction& f,
+           const std::array<ConstFieldView, 3>& velocity, ConstFieldView density, const CutCells& cut,
+           double dt, FluidFraction& f);
+  /// Force on every grain over the flow step: drag, gradient of the pressure, viscous stress, buoyancy. Fills
+  /// f.work where the setup asks for it.
+  void collect(std::span<const Body> grains, const std::vector<char>& here, FluidFraction& f,
                std::span<Load> loads);
 
   /// Of the last mapping.
@@ -101,11 +105,11 @@ class UnresolvedCoupling {
   /// f(cell) = sum of values(place) * weight over the grains, for kN fields at once.
   template <std::size_t kN, class Values>
   void scatter(const std::array<FieldView, kN>& to, const Values& values) const;
-  void find_drags(std::span<const Body> grains, const std::array<ConstFieldView, 3>& velocity,
-                  ConstFieldView solids, double dt);
-  void look_around(std::span<const Body> grains, std::size_t at,
-                   const std::array<ConstFieldView, 3>& velocity, ConstFieldView solids, drag::Batch& batch,
-                   std::size_t n) const;
+  /// fields: velocity, solids, density.
+  void find_drags(std::span<const Body> grains, const std::array<ConstFieldView, 5>& fields, double dt);
+  void look_around(std::span<const Body> grains, std::size_t at, const std::array<ConstFieldView, 5>& fields,
+                   drag::Batch& batch, std::size_t n) const;
+  void find_work(std::span<const Body> grains, FluidFraction& f) const;
   int wrapped(int i, int d) const { return i < 0 ? i + grid_.n(d) : i >= grid_.n(d) ? i - grid_.n(d) : i; }
 
   const Grid& grid_;
@@ -123,6 +127,7 @@ class UnresolvedCoupling {
   std::size_t stride_ = kRun;
   int reach_ = 0;  // in planes, of the grains from the one they are in
   std::vector<GrainDrag> drags_;
+  double dt_ = 0.0;  // s, of the last mapping
   GrainExtremes extremes_;
   std::vector<Vec3> drag_force_;  // of each grain
   std::vector<Vec3> pushed_;      // m/s2, of what acts on a grain besides drag, gravity and contacts

@@ -39,6 +39,10 @@ GasFlow::GasFlow(const Grid& grid, const Options& options)
   set_turbulence_constants();
 }
 
+void GasFlow::advance(double, CutCells&, FluidFraction&) { throw Error("this solver knows no grains"); }
+
+void GasFlow::expect_grains(double) { throw Error("this solver knows no grains"); }
+
 void GasFlow::set(int i, int j, int k, const GasState& s) {
   const double p = s.pressure - options_.reference_pressure;
   const std::array<double, kComponents> primitive{

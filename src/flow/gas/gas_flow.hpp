@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "flow/cut_cells.hpp"
+#include "flow/fluid_fraction.hpp"
 #include "flow/gas/boundary.hpp"
 #include "flow/gas/flux_kernel.hpp"
 #include "flow/gas/geometry.hpp"
@@ -75,6 +76,11 @@ class GasFlow {
   virtual double stable_dt(double courant) = 0;
   /// One step, around `solids`.
   virtual void advance(double dt, CutCells& solids) = 0;
+  /// The same with grains smaller than a cell among them, after expect_grains(). Throws Error where the
+  /// solver knows none.
+  virtual void advance(double dt, CutCells& solids, FluidFraction& grains);
+  /// density: kg/m3, with which their FluidFraction is normalised.
+  virtual void expect_grains(double density);
   /// One step without solids.
   void advance(double dt) { advance(dt, no_solids_); }
 

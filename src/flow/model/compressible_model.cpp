@@ -22,6 +22,7 @@ class CompressibleModel : public FlowModel {
       : case_(c), grid_(grid), inflow_(std::move(inflow)), formulas_(c, grid) {
     solver_ = solver_from_case(c, grid, inlets_);
     solver_->keep_ledger();
+    if (!c.grains.empty()) solver_->expect_grains(density());
     if (inflow_.at) set_jet_states(0.0);
     momentum_at_start_ = momentum();
     mass_at_start_ = solver_->total(kRho);
@@ -42,16 +43,15 @@ class CompressibleModel : public FlowModel {
   }
   double courant(double dt) const override { return dt / solver_->stable_dt(1.0); }
   void advance(double time, double dt, CutCells& solids) override {
-    const ScopedTimer timer(seconds_);
-    move(time, dt, solids);
-    started_ = 1.0;
-    fastest_ = std::max(fastest_, fastest());
-    time_ = time + dt;
-    ++calls_;
+    step(time, dt, [&] { solver_->advance(dt, solids); });
+  }
+  void advance_with_grains(double time, double dt, CutCells& solids, FluidFraction& grains) override {
+    step(time, dt, [&] { solver_->advance(dt, solids, grains); });
   }
 
   double density() const override { return case_.fluid.density; }
   std::array<ConstFieldView, 3> velocity() const override { return {view(kU), view(kV), view(kW)}; }
+  ConstFieldView densities() const override { return view(kRho); }
   std::vector<CellField> fields() override {
     std::vector<CellField> all{
         vector_field("velocity", view(kU), view(kV), view(kW)), scalar_field("density", view(kRho)),
@@ -186,9 +186,15 @@ class CompressibleModel : public FlowModel {
     if (inflow_.at) set_jet_states(time);
     if (formulas_.vary()) formulas_.apply(time, *solver_);
   }
-  void move(double time, double dt, CutCells& solids) {
+  template <class Advance>
+  void step(double time, double dt, const Advance& advance) {
+    const ScopedTimer timer(seconds_);
     set_boundaries(time + 0.5 * dt);
-    solver_->advance(dt, solids);
+    advance();
+    started_ = 1.0;
+    fastest_ = std::max(fastest_, fastest());
+    time_ = time + dt;
+    ++calls_;
   }
 
   /// Gas at rest allows a long step, however hard boundaries or regions of another pressure are going to push
@@ -216,7 +222,8 @@ class CompressibleModel : public FlowModel {
     double reached = 1e30;
     try {
       CutCells none;
-      move(time, dt, none);
+      set_boundaries(time + 0.5 * dt);
+      solver_->advance(dt, none);
       set_boundaries(time + dt);
       reached = dt / solver_->stable_dt(1.0);
     } catch (const DivergedError&) {  // much too long

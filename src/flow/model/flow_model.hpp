@@ -37,6 +37,7 @@ class FlowModel {
 
   virtual double density() const = 0;  ///< kg/m3, of the fluid at rest
   virtual std::array<ConstFieldView, 3> velocity() const = 0;
+  virtual ConstFieldView densities() const { return {}; }  ///< kg/m3; origin null: density() everywhere
   /// Every field that can be written, with units in SI.
   virtual std::vector<CellField> fields() = 0;
   /// Names (with unit) and values at a point: velocity_x..z, pressure, total_pressure, k ...

@@ -338,17 +338,22 @@ void Acoustic::correct_faces() {
   sweep(std::integral_constant<int, 2>{});
 }
 
-void Acoustic::solve(const Boundaries& boundaries, const Block& middle, double dt, const CutCells& cut) {
+void Acoustic::solve(const Boundaries& boundaries, const Block& middle, double dt, const CutCells& cut,
+                     const GasGrains* grains) {
   measure_faces(middle, Real(dt));
   move_to_open(cut, middle);
+  if (grains) grains->drag_faces(middle, velocity_, conductance_);
   open_boundaries(boundaries, middle, Real(last_dt_ > 0.0 ? dt / last_dt_ : 0.0));
   last_dt_ = dt;
   close_faces(cut);
+  if (grains) grains->narrow_faces(velocity_, conductance_);
   const auto open = [&](const BoundaryCell& b) {
+    if (grains) return grains->open(b.axis, b.at);
     return cut.empty() ? Real(1) : 1 - cut.closed[static_cast<std::size_t>(b.axis)].view().origin[b.at];
   };
   measure_cells(middle, Real(dt));
   leave_to_fluid(cut, middle, Real(dt));
+  if (grains) grains->leave_to_gas(middle, residual_, diagonal_);
   CutFlow::fold(cut, residual_.view());
   const double first =
       reduce_sum(grid_.range(), [r = residual_.view(), d = diagonal_.view()](int i, int j, int k) {
@@ -359,6 +364,7 @@ void Acoustic::solve(const Boundaries& boundaries, const Block& middle, double d
   });
   conjugate_gradients(boundaries, cut, kTolerance * kTolerance * first);
   reopen_faces(cut);
+  if (grains) grains->widen_faces(velocity_, conductance_);
   correct_faces();
   for_each_boundary_cell(boundaries, [&](const BoundaryCell& b) {
     const Real admittance = open(b) > 0 ? admittance_[b.face][b.cell] : Real(0);

@@ -2,6 +2,7 @@
 #include "flow/cut_cells.hpp"
 #include "flow/gas/boundary.hpp"
 #include "flow/gas/geometry.hpp"
+#include "flow/piso/gas_grains.hpp"
 
 namespace ejecta::gas {
 
@@ -21,9 +22,10 @@ class Acoustic {
 
   /// `middle`: primitive variables with ghosts. Conjugate gradients from the change of the step before. Of
   /// faces that solids close in part `velocity` is that of the gas through their open part, of closed ones
-  /// that of the solid. Small cells share the change of their carrier. Allocates nothing once it has met as
-  /// many faces.
-  void solve(const Boundaries& boundaries, const Block& middle, double dt, const CutCells& cut);
+  /// that of the solid. Small cells share the change of their carrier. `grains` that take room; null: none.
+  /// Allocates nothing once it has met as many faces.
+  void solve(const Boundaries& boundaries, const Block& middle, double dt, const CutCells& cut,
+             const GasGrains* grains = nullptr);
 
   /// Ghost pressures of the finished middle on transmissive faces, such that the mean with the cell inside is
   /// the pressure of a wave that leaves.

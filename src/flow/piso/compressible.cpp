@@ -5,6 +5,7 @@
 
 #include "base/parallel.hpp"
 #include "flow/gas/update_kernel.hpp"
+#include "flow/grain_exchange.hpp"
 #include "flow/piso/carried.hpp"
 #include "flow/turbulence/closures.hpp"
 
@@ -154,17 +155,16 @@ void Compressible::measure_growth() {
 
 std::vector<double*> Compressible::state_numbers() {
   measure_growth();
-  return {&acoustic_.last_dt(), &growth_};
+  return {&acoustic_.last_dt(), &growth_, &in_room_};
 }
 
 /// All conserved components by the same operator: were the density left out, the velocity of gas of uneven
 /// temperature would be smeared against its mass, and heat would answer the density too late.
-template <class P>
-void Compressible::smooth_increments(double dt, const CutCells& cut) {
+void Compressible::smooth_increments(double dt, bool across, const CutCells& cut) {
   smoother_.prepare(0.5 * dt * largest_nu_, cut, part());
   Field& increment = next_[kRho];
   for (const int c : {kRho, kU, kV, kW, kP, kK, kE}) {
-    if ((c == kV && !P::across) || ((c == kK || c == kE) && !P::turbulent)) continue;
+    if (c == kV && !across) continue;
     Field &u = u_[static_cast<std::size_t>(c)], &start = start_[static_cast<std::size_t>(c)];
     for_each_cell(grid_.range(),
                   IncrementKernel{u.view(), start.view(), u_[kRho].view(), eddy_viscosity_.view(),
@@ -173,7 +173,6 @@ void Compressible::smooth_increments(double dt, const CutCells& cut) {
     smoother_.apply(increment.view(), {start.view(), Real(1), start.view(), Real(0), c == kK || c == kE});
     std::swap(increment, u);
   }
-  for_each_cell(grid_.range(), PrimitiveKernel<P>{view_block<const Real>(u_), view_block<Real>(w_), gas_});
 }
 
 template <class P>
@@ -184,19 +183,20 @@ void Compressible::step(double dt, CutCells& cut) {
   cut_gas_.extend(cut, middle_, eddies());
   cut_gas_.extend_pressure(cut, middle_[kP]);
   boundaries_.fill(middle_);
-  acoustic_.solve(boundaries_, middle_, dt, cut);
+  GasGrains* const grains = takes_room() ? &*grains_ : nullptr;
+  acoustic_.solve(boundaries_, middle_, dt, cut, grains);
   cut_gas_.keep(cut, middle_);
   for_each_cell(grid_.range(), PressureKernel<P>{view_block<Real>(middle_), next_[kP].view().origin,
                                                  acoustic_.change().view().origin, gas_, axes(), Real(dt)});
   std::swap(middle_[kP], next_[kP]);
+  if (grains) grains->drag_middle(middle_);
   if (!cut.empty()) boundaries_.fill(middle_);  // of bodies across the faces of the box
   cut_gas_.push(cut, middle_, Real(0.5 * dt));
   cut_gas_.extend(cut, middle_, eddies());
   cut_gas_.extend_pressure(cut, middle_[kP]);
   boundaries_.fill(middle_);
   acoustic_.let_waves_out(boundaries_, middle_);
-  const auto q = [&](int d) { return acoustic_.velocity(d).view().origin; };
-  fluxes<P>(middle_, CarriedConvection{{q(0), q(1), q(2)}});
+  find_fluxes<P>();
   if (options_.keep_ledger) add_to_ledger(dt, cut);
   std::swap(u_, start_);
   for_each_cell(grid_.range(),
@@ -206,15 +206,34 @@ void Compressible::step(double dt, CutCells& cut) {
                                 view_block<const Real>(flux_[1]), view_block<const Real>(flux_[2]),
                                 eddy_viscosity_.view().origin, gas_, diffusion_, axes(), Real(dt), Real(0)});
   std::swap(w_, next_);
+  if (grains) grains->balance(*fraction_, middle_, start_, u_);
   cut_gas_.balance(cut, flux_, start_, middle_, eddies(), u_, w_, Real(dt));
-  if (turbulent() && dt > explicit_dt_) {
-    smooth_increments<P>(dt, cut);
+  const bool smoothed = turbulent() && dt > explicit_dt_;
+  if (smoothed) smooth_increments(dt, P::across, cut);
+  if (grains) grains->settle(*fraction_, u_);
+  else if (fraction_) grains_->drag_alone(*fraction_, dt, u_);
+  const PrimitiveKernel<P> primitive{view_block<const Real>(u_), view_block<Real>(w_), gas_};
+  if (smoothed || fraction_) {
+    for_each_cell(grid_.range(), primitive);
   } else {
-    const PrimitiveKernel<P> primitive{view_block<const Real>(u_), view_block<Real>(w_), gas_};
     for (const CutCell& c : cut.cells) primitive(c.i, c.j, c.k);
     for (const GhostCell& g : cut.ghosts) primitive(g.i, g.j, g.k);
   }
   cut_gas_.settle(cut, eddies(), u_, w_);
+}
+
+template <class P>
+void Compressible::find_fluxes() {
+  const auto all = [&](const auto& q) {
+    fluxes<P>(middle_, CarriedConvection{{q(0).view().origin, q(1).view().origin, q(2).view().origin}});
+  };
+  const auto velocity = [&](int d) -> const Field& { return acoustic_.velocity(d); };
+  if (!takes_room()) return all(velocity);
+  std::swap(flux_, grains_->surface());
+  all([&](int) -> const Field& { return grains_->nothing(); });
+  std::swap(flux_, grains_->surface());
+  const auto& through = grains_->carry({&velocity(0), &velocity(1), &velocity(2)});
+  all([&](int d) -> const Field& { return through[static_cast<std::size_t>(d)]; });
 }
 
 void Compressible::advance(double dt, CutCells& cut) {
@@ -239,10 +258,53 @@ void Compressible::advance(double dt, CutCells& cut) {
   ledger().displaced += given.displaced;
 }
 
+void Compressible::advance(double dt, CutCells& cut, FluidFraction& f) {
+  const bool takes_room = f.acts && cut.empty();
+  if (takes_room != (in_room_ > 0.0)) {
+    const Contents before = contents();
+    in_room_ = takes_room ? 1.0 : 0.0;
+    resume();
+    if (takes_room)
+      for_each_cell(grid_.range(), [part = grains_->part().view(), solids = f.solids_before.view()](
+                                       int i, int j, int k) { part(i, j, k) = 1 - solids(i, j, k); });
+    if (options_.keep_ledger) ledger().displaced += contents() - before;
+  }
+  fraction_ = f.acts ? &f : nullptr;
+  if (takes_room) grains_->begin(f, boundaries_, dt);
+  advance(dt, cut);
+  fraction_ = nullptr;
+  if (!takes_room) find_push_of_grains(f);
+  if (f.acts && options_.keep_ledger) book_grains(f, dt);
+}
+
+/// What grains see of a gas in which they take no room.
+void Compressible::find_push_of_grains(FluidFraction& f) {
+  boundaries_.fill(w_);
+  const std::array<ConstFieldView, 3> u{w_[kU].view(), w_[kV].view(), w_[kW].view()};
+  find_push(grid_, w_[kP].view(), u, turbulent() ? eddy_viscosity_.view() : ConstFieldView{},
+            options_.viscosity, 1.0 / grains_->density(), f);
+  for (std::size_t c = 0; !f.acts && c < 3; ++c)
+    for_each_cell(grid_.range(),
+                  [to = f.seen[c].view(), from = u[c]](int i, int j, int k) { to(i, j, k) = from(i, j, k); });
+}
+
+void Compressible::book_grains(const FluidFraction& f, double dt) {
+  const bool room = in_room_ > 0.0;
+  const TakenByGrains taken = taken_by_grains(grid_, f, Vec3(0, 0, 0), room ? ConstFieldView{} : part());
+  ledger().momentum_of_solids -= dt * grains_->density() * taken.force;
+  ledger().work_of_solids -= grains_->energy_taken(f, middle_, room, part());
+}
+
+void Compressible::resume() {
+  cut_gas_.resume();
+  part_ = in_room_ > 0.0 ? &grains_->part() : &cut_gas_.carried();
+}
+
 std::vector<NamedField> Compressible::state() {
   std::vector<NamedField> fields = GasFlow::state();
   fields.push_back({"pressure_change", &acoustic_.change()});
   fields.push_back({"carried", &cut_gas_.carried()});
+  if (grains_) fields.push_back({"part", &grains_->part()});
   return fields;
 }
 

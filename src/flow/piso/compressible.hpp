@@ -1,8 +1,11 @@
 #pragma once
+#include <optional>
+
 #include "flow/gas/gas_flow.hpp"
 #include "flow/increment_smoother.hpp"
 #include "flow/piso/acoustic.hpp"
 #include "flow/piso/cut_gas.hpp"
+#include "flow/piso/gas_grains.hpp"
 
 namespace ejecta::gas {
 
@@ -26,20 +29,31 @@ class Compressible : public GasFlow {
   double stable_dt(double courant) override;
   using GasFlow::advance;
   void advance(double dt, CutCells& cut) override;
+  void expect_grains(double density) override { grains_.emplace(grid_, gas_, density); }
+  /// Where no body cuts cells grains take room of the gas; else they drag it alone.
+  void advance(double dt, CutCells& cut, FluidFraction& grains) override;
   std::vector<NamedField> state() override;
   std::vector<double*> state_numbers() override;
-  void resume() override { cut_gas_.resume(); }
+  void resume() override;
   int iterations() const { return acoustic_.iterations(); }  ///< of the last step's pressure equation
 
  private:
   template <class P>
   void step(double dt, CutCells& cut);
-  void measure_growth();
+  /// What crosses the faces in a step, from its middle.
   template <class P>
-  void smooth_increments(double dt, const CutCells& cut);
+  void find_fluxes();
+  void find_push_of_grains(FluidFraction& f);
+  void book_grains(const FluidFraction& f, double dt);
+  void measure_growth();
+  void smooth_increments(double dt, bool across, const CutCells& cut);
+  bool takes_room() const { return fraction_ && in_room_ > 0.0; }  ///< grains, in this step
   const Field* eddies() const { return turbulent() ? &eddy_viscosity_ : nullptr; }
   Acoustic acoustic_;
   CutGas cut_gas_;
+  std::optional<GasGrains> grains_;
+  FluidFraction* fraction_ = nullptr;  // of the grains that act in this step
+  double in_room_ = 0.0;               // 1: the gas is what grains leave of cells
   IncrementSmoother smoother_;
   Block start_, middle_;
   bool had_solids_ = true;

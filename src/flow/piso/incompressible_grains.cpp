@@ -1,106 +1,17 @@
 // Incompressible flow with grains smaller than a cell in it.
 #include <algorithm>
 #include <cmath>
-#include <type_traits>
 #include <utility>
-#include <vector>
 
-#include "base/row_sum.hpp"
 #include "base/stopwatch.hpp"
 #include "flow/cut_geometry.hpp"
+#include "flow/grain_exchange.hpp"
 #include "flow/piso/incompressible.hpp"
 #include "flow/piso/momentum.hpp"
 #include "flow/stencil.hpp"
 #include "grid/faces.hpp"
 
 namespace ejecta {
-namespace {
-
-/// div tau / rho of a row, m/s2, as nu times the Laplacian: whatever it is, what the grains get the fluid
-/// loses.
-template <bool kTurbulent>
-struct FrictionRow {
-  const Real *u, *eddy;
-  std::ptrdiff_t sy, sz;
-  Metrics x, y, z;
-  Real on_x, on_y, on_z, nu;
-  int j, k;
-
-  EJECTA_KERNEL static Real second(const Real* at, std::ptrdiff_t s, const Metrics& m, int n) {
-    return ((at[s] - at[0]) * m.inv_distance[n + 1] - (at[0] - at[-s]) * m.inv_distance[n]) * m.inv_width[n];
-  }
-  EJECTA_KERNEL Real operator()(int i) const {
-    const Real* at = u + i;
-    const Real sum = on_x * second(at, 1, x, i) + on_y * second(at, sy, y, j) + on_z * second(at, sz, z, k);
-    if constexpr (kTurbulent) return (nu + eddy[i]) * sum;
-    else return nu * sum;
-  }
-};
-
-/// use(j, k, c, friction of the row) for every row of every component of the velocity. eddy: origin null:
-/// laminar.
-template <class Use>
-void for_each_friction_row(const Grid& grid, const std::array<ConstFieldView, 3>& u, ConstFieldView eddy,
-                           double viscosity, const Use& use) {
-  const auto go = [&]<bool kTurbulent>(std::bool_constant<kTurbulent>) {
-    for_each_index(grid.nz(), [&](int k) {
-      for (int j = 0; j < grid.ny(); ++j)
-        for (std::size_t c = 0; c < 3; ++c)
-          use(j, k, c,
-              FrictionRow<kTurbulent>{u[c].row(j, k), kTurbulent ? eddy.row(j, k) : nullptr, u[c].sy, u[c].sz,
-                                      grid.metrics(0), grid.metrics(1), grid.metrics(2), Real(grid.active(0)),
-                                      Real(grid.active(1)), Real(grid.active(2)),
-                                      static_cast<Real>(viscosity), j, k});
-    });
-  };
-  eddy.origin ? go(std::true_type{}) : go(std::false_type{});
-}
-
-/// What the grains took from the fluid in a step.
-struct TakenByGrains {
-  Vec3 force{0, 0, 0};  ///< over density, m4/s2
-  double volume = 0;    ///< m3
-};
-
-/// kRoom: they take room of the fluid; else `part` of each cell is fluid.
-template <bool kRoom>
-TakenByGrains sum_taken(const Grid& grid, const FluidFraction& f, const Vec3& acceleration,
-                        ConstFieldView part) {
-  std::vector<TakenByGrains> planes(static_cast<std::size_t>(grid.nz()));
-  for_each_index(grid.nz(), [&](int k) {
-    TakenByGrains& sum = planes[static_cast<std::size_t>(k)];
-    for (int j = 0; j < grid.ny(); ++j) {
-      const double area = double(grid.metrics(1).volume[j]) * double(grid.metrics(2).volume[k]);
-      const Real *now = f.solids.view().row(j, k), *before = f.solids_before.view().row(j, k),
-                 *drag = f.drag.view().row(j, k), *open = part.row(j, k), *length = grid.metrics(0).volume;
-      for (std::size_t c = 0; c < 3; ++c) {
-        const Real *seen = f.seen[c].view().row(j, k), *dragging = f.dragging[c].view().row(j, k),
-                   *push = f.push[c].view().row(j, k);
-        const double a = acceleration[int(c)];
-        sum.force[int(c)] +=
-            area * row_sum(
-                       0, grid.nx(), [=](int i) __attribute__((always_inline)) {
-                         const double rate = double(drag[i]) * double(seen[i]) - double(dragging[i]);
-                         if constexpr (kRoom)
-                           return (rate + double(now[i]) * (double(push[i]) + a)) * double(length[i]);
-                         else return rate * double(open[i]) * double(length[i]);
-                       });
-      }
-      sum.volume += area * row_sum(0, grid.nx(), [=](int i) {
-                      return (double(now[i]) - double(before[i])) * double(length[i]);
-                    });
-    }
-  });
-  TakenByGrains all;
-  for (const TakenByGrains& plane : planes) {
-    all.force += plane.force;
-    all.volume += plane.volume;
-  }
-  return all;
-}
-
-}  // namespace
-
 void Incompressible::advance(double time, double dt, CutCells& cut, FluidFraction& f) {
   if (!fraction_step_) fraction_step_ = std::make_unique<FractionStep>(grid_, boundaries_, poisson_);
   const bool takes_room = f.acts && cut.empty();
@@ -248,31 +159,14 @@ void Incompressible::drag_cells(double h) {
 
 /// What grains see of a flow that they have not displaced.
 void Incompressible::find_results(FluidFraction& f) {
-  const Metrics m[3] = {grid_.metrics(0), grid_.metrics(1), grid_.metrics(2)};
   boundaries_.fill_pressure(p_.view(), views(q_), true);
   boundaries_.fill_velocity(views(u_), views(q_));
-  const auto rub = [&](int j, int k, std::size_t c, const auto& friction) {
-    for_each_lane(
-        0, grid_.nx(), [ =, push = f.push[c].view().row(j, k) ](int i) __attribute__((always_inline)) {
-          push[i] = friction(i);
-        });
-  };
-  for_each_friction_row(grid_, std::as_const(*this).views(u_),
-                        turbulence_ ? turbulence_->eddy_viscosity() : ConstFieldView{}, setup_.viscosity,
-                        rub);
-  for (int d = 0; d < 3; ++d) {
-    const std::size_t c = static_cast<std::size_t>(d);
-    if (!f.acts)
-      for_each_cell(grid_.range(), [to = f.seen[c].view(), from = u_[c].view()](int i, int j, int k) {
-        to(i, j, k) = from(i, j, k);
-      });
-    if (!grid_.active(d)) continue;
-    const std::ptrdiff_t s = stride(p_.view(), d);
-    for_each_cell(grid_.range(),
-                  [=, to = f.push[c].view(), p = p_.view(), metrics = m[d]](int i, int j, int k) {
-                    to(i, j, k) -= cell_gradient(p.row(j, k) + i, s, metrics, d == 0 ? i : d == 1 ? j : k);
-                  });
-  }
+  find_push(grid_, p_.view(), std::as_const(*this).views(u_),
+            turbulence_ ? turbulence_->eddy_viscosity() : ConstFieldView{}, setup_.viscosity, 1.0, f);
+  for (std::size_t c = 0; !f.acts && c < 3; ++c)
+    for_each_cell(grid_.range(), [to = f.seen[c].view(), from = u_[c].view()](int i, int j, int k) {
+      to(i, j, k) = from(i, j, k);
+    });
 }
 
 /// Momentum and mass of the step. What drags the fluid is counted from its fields, not from the grains.
@@ -281,8 +175,8 @@ void Incompressible::book_grains(const FluidFraction& f, double dt) {
   impulse_on_grains_.setZero();
   if (!f.acts) return;
   const bool room = fraction_ != nullptr;
-  const TakenByGrains taken = room ? sum_taken<true>(grid_, f, setup_.acceleration, cut_flow_.carried())
-                                   : sum_taken<false>(grid_, f, setup_.acceleration, cut_flow_.carried());
+  const TakenByGrains taken =
+      taken_by_grains(grid_, f, setup_.acceleration, room ? ConstFieldView{} : cut_flow_.carried());
   impulse_on_grains_ = dt * setup_.density * taken.force;
   ledger_.impulse_on_solids += impulse_on_grains_;
   if (!room) return;
