@@ -1,7 +1,7 @@
-# Tests of the program itself.
+# Tests of the program itself. COST: what takes longest begins first, so that no core waits at the end.
 find_package(Python3 REQUIRED COMPONENTS Interpreter)
 add_test(NAME app.cli COMMAND ${Python3_EXECUTABLE} ${CMAKE_CURRENT_LIST_DIR}/cli_test.py $<TARGET_FILE:ejecta>)
-set_tests_properties(app.cli PROPERTIES LABELS fast)
+set_tests_properties(app.cli PROPERTIES LABELS fast COST 20)
 add_test(NAME app.resume COMMAND ${Python3_EXECUTABLE} ${CMAKE_CURRENT_LIST_DIR}/resume_test.py $<TARGET_FILE:ejecta>
          ${CMAKE_CURRENT_LIST_DIR}/small-ejection.toml ${CMAKE_CURRENT_BINARY_DIR}/resume)
 set_tests_properties(app.resume PROPERTIES LABELS fast TIMEOUT 600)
@@ -17,7 +17,7 @@ set_tests_properties(app.paraview_live PROPERTIES SKIP_RETURN_CODE 77 LABELS fas
 # Bodies without a fluid: shipped cases with what they expect.
 add_test(NAME app.bodies COMMAND ejecta validate cases/bodies validation/dem/chung-ooi-5.toml validation/dem/chung-ooi-6.toml
          validation/dem/chung-ooi-8.toml verification/dem/flip-period.toml WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
-set_tests_properties(app.bodies PROPERTIES LABELS fast TIMEOUT 600)
+set_tests_properties(app.bodies PROPERTIES LABELS fast TIMEOUT 600 COST 40)
 # The jet that comes with the paper's cases, computed again: minutes.
 add_test(NAME app.stored_jet COMMAND ${Python3_EXECUTABLE} ${CMAKE_CURRENT_LIST_DIR}/stored_jet_test.py $<TARGET_FILE:ejecta>
          ${PROJECT_SOURCE_DIR}/cases/paper/10mm-cubic.toml)
@@ -38,7 +38,7 @@ add_test(NAME app.hundred_runs COMMAND test_simulation --gtest_filter=Run.SideBy
 set_tests_properties(app.hundred_runs PROPERTIES LABELS slow TIMEOUT 3600 ENVIRONMENT EJECTA_SIDE_BY_SIDE=100)
 # A whole sorter: threads, kills, books.
 add_test(NAME app.sort COMMAND ${Python3_EXECUTABLE} ${CMAKE_CURRENT_LIST_DIR}/sort_test.py $<TARGET_FILE:ejecta>)
-set_tests_properties(app.sort PROPERTIES LABELS fast TIMEOUT 600)
+set_tests_properties(app.sort PROPERTIES LABELS fast TIMEOUT 600 COST 30)
 # A real SLURM of one node, where Debian's slurm-wlm is installed.
 add_test(NAME app.slurm COMMAND ${Python3_EXECUTABLE} ${CMAKE_CURRENT_LIST_DIR}/slurm_test.py $<TARGET_FILE:ejecta>)
 set_tests_properties(app.slurm PROPERTIES LABELS slow SKIP_RETURN_CODE 77 TIMEOUT 600 RUN_SERIAL ON)

@@ -21,7 +21,7 @@ function(ejecta_program_test name program)
   else()
     add_test(NAME ${name} COMMAND sh -c "echo skipped: ${name} needs a program that is not installed; exit 77")
   endif()
-  set_tests_properties(${name} PROPERTIES SKIP_RETURN_CODE 77 TIMEOUT 300 LABELS "fast;output")
+  set_tests_properties(${name} PROPERTIES SKIP_RETURN_CODE 77 TIMEOUT 300 LABELS "fast;output" COST 50)
 endfunction()
 
 ejecta_program_test(output.paraview "${PVPYTHON}" --force-offscreen-rendering ${sources}/paraview/paraview_test.py ${sample}

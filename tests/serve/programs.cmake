@@ -2,7 +2,7 @@
 if(TARGET ejecta-serve)
   add_test(NAME serve.server COMMAND ${Python3_EXECUTABLE} ${CMAKE_CURRENT_LIST_DIR}/serve_test.py $<TARGET_FILE:ejecta>
            ${PROJECT_SOURCE_DIR} ${CMAKE_BINARY_DIR}/tests/serve)
-  set_tests_properties(serve.server PROPERTIES LABELS fast TIMEOUT 900)
+  set_tests_properties(serve.server PROPERTIES LABELS fast TIMEOUT 900 COST 60)
 endif()
 find_program(NODE node)
 if(TARGET ejecta-serve AND NODE)
