@@ -1,10 +1,13 @@
 #include "simulation/run.hpp"
 
+#include <ostream>
+
 #include "base/file_lock.hpp"
 #include "base/stopwatch.hpp"
 #include "bindings.hpp"
 #include "case_tree.hpp"
 #include "output/verdict.hpp"
+#include "workflow/watched_run.hpp"
 
 namespace ejecta::python {
 namespace {
@@ -129,11 +132,15 @@ py::dict run_case(const CaseTree& tree, const std::string& kind, std::optional<s
     const py::gil_scoped_release others_may_run;
     const bool jet = kind == "jet";
     const JetOrder order = jet ? jet_of(tree.checked()) : JetOrder{tree.checked()};
+    const RunOfCase compute = [&](const Case& c, const Context& in) {
+      return jet ? run_jet(c, order.kept_at, in) : run(c, in);
+    };
     std::optional<Result> finished;
     if (resume) finished = finished_run(order.jet, *directory);
-    result = finished ? std::move(*finished)
-             : jet    ? run_jet(order.jet, order.kept_at, context)
-                      : run(order.jet, context);
+    std::ostream nowhere(nullptr);
+    result = finished    ? std::move(*finished)
+             : directory ? WatchedRun(order.jet, nowhere, {.alone = false}).compute(compute, context)
+                         : compute(order.jet, context);
   }
   onlooker.rethrow();
   return as_dict(std::move(result));

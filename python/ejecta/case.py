@@ -152,7 +152,8 @@ class Case:
         return True
 
     def __delitem__(self, path: str) -> None:
-        """Back to the default."""
+        """Back to the default. Raises CaseError where there is no such key."""
+        self._tree.get(path)
         self._tree.remove(path)
         self._changes[path] = None
 

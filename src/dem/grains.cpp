@@ -134,6 +134,26 @@ class RandomPlaces {
     return {};
   }
 
+  /// Whether a ball there would lie in a grain that is placed.
+  bool meets_grains(const Vec3& x, double r) const {
+    constexpr double kTouching = 1 - 1e-9;
+    for (int c = -1; c <= 1; ++c)
+      for (int b = -1; b <= 1; ++b)
+        for (int a = -1; a <= 1; ++a) {
+          int p[3] = {cell(x, 0) + a, cell(x, 1) + b, cell(x, 2) + c};
+          bool inside = true;
+          for (int d = 0; d < 3; ++d) {
+            if (periodic_[d]) p[d] = (p[d] + n_[d]) % n_[d];
+            inside = inside && p[d] >= 0 && p[d] < n_[d];
+          }
+          if (!inside) continue;
+          for (const Ball& ball : cells_[at(p[0], p[1], p[2])])
+            if (particles_.domain().nearest(ball.centre - x).norm() < kTouching * (ball.radius + r))
+              return true;
+        }
+    return false;
+  }
+
  private:
   struct Ball {
     Vec3 centre;
@@ -150,21 +170,8 @@ class RandomPlaces {
   std::size_t index(const Vec3& x) const { return at(cell(x, 0), cell(x, 1), cell(x, 2)); }
 
   bool clear(const Vec3& x, double r) const {
+    if (meets_grains(x, r)) return false;
     const Domain& domain = particles_.domain();
-    for (int c = -1; c <= 1; ++c)
-      for (int b = -1; b <= 1; ++b)
-        for (int a = -1; a <= 1; ++a) {
-          int p[3] = {cell(x, 0) + a, cell(x, 1) + b, cell(x, 2) + c};
-          bool inside = true;
-          for (int d = 0; d < 3; ++d) {
-            if (periodic_[d]) p[d] = (p[d] + n_[d]) % n_[d];
-            inside = inside && p[d] >= 0 && p[d] < n_[d];
-          }
-          if (!inside) continue;
-          for (const Ball& ball : cells_[at(p[0], p[1], p[2])])
-            if (domain.nearest(ball.centre - x).squaredNorm() < (ball.radius + r) * (ball.radius + r))
-              return false;
-        }
     for (const Body& body : particles_.bodies()) {
       const Vec3 nearest = body.position + domain.nearest(x - body.position);
       const double reach = body.shape.bounding_radius() + r;
@@ -195,9 +202,20 @@ void add_group(const GrainsSpec& g, std::uint64_t group, const std::string& fold
         {.key = amount_of(g), .expected = "more of them, or smaller ones", .example = "count = 100"});
   const double largest = *std::max_element(sizes.begin(), sizes.end());
   const CounterRandom random(static_cast<std::uint64_t>(g.seed), kPlaces + kStreams * group);
+  double widest = largest;  // of all that have to keep clear of each other
+  for (const Body& b : made) widest = std::max(widest, 2 * b.shape.bounding_radius());
   std::vector<Vec3> places;
   if (g.packing == GrainPacking::lattice) {
     places = lattice_places(g, sizes.size(), largest, particles.domain());
+    const RandomPlaces taken(g, widest, particles, made);
+    for (std::size_t n = 0; n < sizes.size(); ++n)
+      if (taken.meets_grains(places[n], 0.5 * sizes[n]))
+        throw InputError(
+            fmt::format("grains \"{}\": number {} of the lattice would lie in a grain of another", g.name,
+                        n + 1),
+            {.key = "region",
+             .expected = "regions that do not overlap; at random grains keep clear of others",
+             .example = "packing = \"random\""});
   } else if (g.over > 0) {  // those who come find the place free or wait
     for (std::size_t n = 0; n < sizes.size(); ++n) {
       const Vec3 low = (*g.region)[0], edges = (*g.region)[1] - low;
@@ -208,8 +226,6 @@ void add_group(const GrainsSpec& g, std::uint64_t group, const std::string& fold
       places.push_back(x);
     }
   } else {
-    double widest = largest;  // of all that have to keep clear of each other
-    for (const Body& b : made) widest = std::max(widest, 2 * b.shape.bounding_radius());
     RandomPlaces room(g, widest, particles, made);
     for (std::size_t n = 0; n < sizes.size(); ++n) {
       const auto x = room.find(sizes[n], random);

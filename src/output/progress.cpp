@@ -134,7 +134,7 @@ void Progress::write_file(const ProgressState& s, const std::string& state) cons
                               {"cells", s.cells},
                               {"cell_steps_per_s", steps_per_wall_ * static_cast<double>(s.cells)},
                               {"wall_time_s", now() - start_},
-                              {"process", ::getpid()}};
+                              {"process", options_.alone ? ::getpid() : 0}};
   const double left = eta(s);
   json["eta_s"] = std::isfinite(left) ? nlohmann::ordered_json(left) : nlohmann::ordered_json(nullptr);
   output::write_file(options_.file, json.dump(2) + '\n');

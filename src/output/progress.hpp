@@ -17,9 +17,10 @@ struct ProgressOptions {
   Verbosity verbosity = Verbosity::normal;
   bool terminal = false;  ///< a bar that redraws itself; otherwise lines
   bool colour = false;
-  int width = 100;                          ///< columns of the terminal
-  double line_interval = 5.0;               ///< s of wall time between lines where there is no terminal
-  std::filesystem::path file;               ///< progress.json; empty: none
+  int width = 100;             ///< columns of the terminal
+  double line_interval = 5.0;  ///< s of wall time between lines where there is no terminal
+  std::filesystem::path file;  ///< progress.json; empty: none
+  bool alone = true;  ///< in its process, which may be asked to end; else progress.json does not name it
   std::function<double()> wall_clock = {};  ///< s; empty: the steady clock
 };
 

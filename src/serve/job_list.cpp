@@ -224,8 +224,10 @@ void JobList::stop(const std::string& name) {
   }
   if (kind != "run") return;
   const Json& progress = files_.read(directory / "progress.json");  // started at a terminal
-  if (const pid_t process = progress.is_object() ? progress.value("process", 0) : 0; process > 0)
-    ::kill(process, SIGTERM);
+  const pid_t process = progress.is_object() ? progress.value("process", 0) : 0;
+  if (process <= 0)
+    throw InputError(fmt::format("{} runs inside another program, such as a notebook: stop it there", name));
+  ::kill(process, SIGTERM);
 }
 
 void JobList::remove(const std::string& name) {

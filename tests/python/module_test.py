@@ -120,6 +120,8 @@ class SameBits(unittest.TestCase):
         case = short("3 ms")
         del case["output.report"]
         result = ejecta.run(case, out=directory, threads=2)
+        said = ejecta.Job(directory).progress()
+        self.assertEqual((said["state"], said["process"]), ("done", 0))  # nobody may end this process for it
         self.assertEqual(physics(result.quantities), physics(self.command))
         self.assertEqual((directory / "case.toml").read_text(), (self.directory / "case.toml").read_text())
         for file in (self.directory / "history").iterdir():
@@ -231,6 +233,8 @@ class Cases(unittest.TestCase):
         self.assertEqual(case["flow.turbulence"], "k-epsilon")
         self.assertIs(case["body.particle.on_belt"], True)
         del case["valve.duration"]
+        with self.assertRaises(ejecta.CaseError):
+            del case["valve.durattion"]
         self.assertEqual(case["valve.duration"], ejecta.Case.load(small)["valve.duration"])
 
     def test_bits_of_numbers(self):
