@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "coupling/unresolved/grain_drag.hpp"
-#include "coupling/unresolved/kernel.hpp"
+#include "coupling/unresolved/grain_map.hpp"
 #include "dem/body.hpp"
 #include "dem/loads.hpp"
 #include "flow/cut_cells.hpp"
@@ -41,8 +41,7 @@ struct GrainExtremes {
 /// Two-way coupling of grains smaller than a cell with the flow (Zhou et al. 2010, model A; paper Eqs 1-3).
 /// One kernel maps volume, drag and what a grain sees, so that volume and Newton's third law are exact. Drag
 /// over a step is that of the exact relaxation of the grain with the coefficient held, so that no step is too
-/// long. Grains are taken row by row of cells, those of a row in their order: neighbours meet in the cache,
-/// and any number of threads gives the same bits.
+/// long.
 class UnresolvedCoupling {
  public:
   UnresolvedCoupling(const Grid& grid, const UnresolvedSetup& setup);
@@ -63,69 +62,23 @@ class UnresolvedCoupling {
   /// Drag on every grain in the last collection, N.
   const std::vector<Vec3>& drag_forces() const { return drag_force_; }
   /// Sum of solids times volume over the cells, m3: that of the grains in the box.
-  double mapped_volume(const FluidFraction& f) const;
+  double mapped_volume(const FluidFraction& f) const { return map_.integral(f.solids.view()); }
 
   std::vector<double> state() const;
   void restore(std::span<const double> state, std::size_t grains);
 
  private:
-  /// Cells of a row that are read and written together.
-  static constexpr int kRun = 4;
-  /// A grain and its kernel; its weights along each axis stand in weights_.
-  struct Place {
-    int grain = 0;
-    std::array<int, 3> first{}, count{};  // cells; along x whole runs
-    bool near_bodies = false;             // room_ counts
-    bool in_pieces = false;               // its rows go on at the other end of the box
-    Real scale = 0;                       // of the product of the weights: 1 but near bodies
-    double inside = 0.0;                  // part of the kernel in the box; 0: the grain is not there
-    double density = 0.0;                 // 1/m3, of what it leaves in cells, as it sees it
-    double spread = 0.0;                  // m, standard deviation of where its force acts
-  };
-  void note_room(const CutCells& cut);
   void note_grains(std::span<const Body> grains);
-  /// Lists the grains that are there by rows of cells.
-  void sort_grains(std::span<const Body> grains, const std::vector<char>& here);
-  void place_grains(std::span<const Body> grains);
-  int place(const Body& grain, std::size_t at);
-  void take_whole_runs(Place& p, Real* along) const;
-  void place_near_bodies(std::size_t at);
-  const Real* weights(std::size_t at, std::size_t axis) const {
-    return weights_.data() + (3 * at + axis) * stride_;
-  }
-  template <class Visit>
-  void for_each_row(std::size_t at, int plane, const Visit& visit) const;
-  template <std::size_t kN>
-  std::array<double, kN> gather(std::size_t at, const std::array<ConstFieldView, kN>& fields) const;
-  template <std::size_t kN>
-  std::array<double, kN> gather_in_pieces(std::size_t at, const std::array<ConstFieldView, kN>& fields) const;
-  /// visit(place) for the grains that reach into a plane of cells, and the plane's number in their kernels.
-  template <class Visit>
-  void for_each_in_plane(int k, const Visit& visit) const;
-  /// f(cell) = sum of values(place) * weight over the grains, for kN fields at once.
-  template <std::size_t kN, class Values>
-  void scatter(const std::array<FieldView, kN>& to, const Values& values) const;
   /// fields: velocity, solids, density.
   void find_drags(std::span<const Body> grains, const std::array<ConstFieldView, 5>& fields, double dt);
   void look_around(std::span<const Body> grains, std::size_t at, const std::array<ConstFieldView, 5>& fields,
                    drag::Batch& batch, std::size_t n) const;
   void find_work(std::span<const Body> grains, FluidFraction& f) const;
-  int wrapped(int i, int d) const { return i < 0 ? i + grid_.n(d) : i >= grid_.n(d) ? i - grid_.n(d) : i; }
 
   const Grid& grid_;
   UnresolvedSetup setup_;
-  Field room_;           // part of each cell whose momentum is the fluid's, where there are bodies
-  bool bodies_ = false;  // there are
-  Range3 around_;        // cells that they cut and fill
-  std::array<std::vector<double>, 3> inverse_widths_;  // of the cells, 1/m
-  std::vector<double> diameters_, volumes_, masses_;   // of the grains, m, m3, kg
-  std::vector<std::array<int, 3>> cells_;              // in which they are, or were when they last were there
-  std::vector<int> listed_;                            // those that are there, row by row
-  std::vector<int> first_of_row_;  // in listed_ and what follows, which stand in its order
-  std::vector<Place> places_;
-  std::vector<Real> weights_;  // stride_ along each axis
-  std::size_t stride_ = kRun;
-  int reach_ = 0;  // in planes, of the grains from the one they are in
+  GrainMap map_;
+  std::vector<double> diameters_, volumes_, masses_;  // of the grains, m, m3, kg
   std::vector<GrainDrag> drags_;
   double dt_ = 0.0;  // s, of the last mapping
   GrainExtremes extremes_;
