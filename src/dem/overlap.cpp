@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 namespace ejecta {
@@ -12,13 +13,41 @@ using Polygon = std::vector<Vec3>;
 constexpr double kRounding = 1e-15;  // of a solid's size
 constexpr double kHair = 1e-10;      // of the sum of two: by so much the first is made larger, see below
 
+/// Of a flat convex face: from one point to another. In no order: sums and cuts need none.
+struct CutEdge {
+  int from = 0, to = 0;
+};
+enum class Origin : char { solid, first_plane, plane };
+/// The edges of one face of what is left of a solid, up to `end`.
+struct CutFace {
+  std::size_t end = 0;
+  Origin origin = Origin::solid;
+};
+struct CutSolid {
+  std::vector<Vec3> points;
+  std::vector<CutEdge> edges;  // face after face
+  std::vector<CutFace> faces;
+  void clear() {
+    points.clear();
+    edges.clear();
+    faces.clear();
+  }
+  int add(const Vec3& p) {
+    points.push_back(p);
+    return static_cast<int>(points.size()) - 1;
+  }
+};
+
 /// Buffers kept between calls: no step allocates.
 struct Scratch {
   Polygon polygon, clipped;
   std::vector<Vec3> moved;  // vertices of the second solid, axes of the first
   std::vector<double> heights;
   std::vector<unsigned char> code;  // of each vertex, see load_face; or whether it lies under a plane
-  std::vector<HalfSpace> planes, cell;
+  std::vector<HalfSpace> planes;
+  CutSolid solid, kept;        // what is left of a solid
+  std::vector<CutEdge> lid;    // its new face
+  std::vector<int> names;      // of its points, in what is kept
   std::size_t cut_shared = 0;  // of the planes: the first so many cut what the solids may share
 };
 
@@ -71,7 +100,105 @@ struct Sums {
     }
     return sum;
   }
+  /// Adds a face; returns its vector area.
+  Vec3 add(const CutSolid& solid, std::span<const CutEdge> edges) {
+    Vec3 twice(0, 0, 0), heavy(0, 0, 0);
+    double six_v = 0.0;
+    const auto arm = [&](int n) -> Vec3 { return solid.points[static_cast<std::size_t>(n)] - apex; };
+    const Vec3 a = arm(edges[0].from);
+    for (const CutEdge& e : edges) {
+      const Vec3 b = arm(e.from), c = arm(e.to), area = (b - a).cross(c - a);
+      const double v = a.dot(area);
+      twice += area;
+      six_v += v;
+      heavy += v * (a + b + c);
+    }
+    volume += six_v / 6.0;
+    moment += heavy / 24.0;
+    return 0.5 * twice;
+  }
 };
+
+/// Puts the faces of a solid into s.solid but for those wholly beyond the plane.
+void load_solid(Scratch& s, const Polytope& p, const HalfSpace& plane) {
+  s.solid.clear();
+  s.code.clear();
+  for (const Vec3& v : p.vertices) s.code.push_back(plane.normal.dot(v) < plane.offset);
+  s.names.assign(p.vertices.size(), -1);
+  const auto name = [&](int n) {
+    int& own = s.names[static_cast<std::size_t>(n)];
+    if (own < 0) own = s.solid.add(p.vertices[static_cast<std::size_t>(n)]);
+    return own;
+  };
+  for (const Polytope::Face& f : p.faces) {
+    const auto corners = corners_of(p, f);
+    if (std::none_of(corners.begin(), corners.end(),
+                     [&](int n) { return s.code[static_cast<std::size_t>(n)]; }))
+      continue;
+    int last = name(corners.back());
+    for (const int n : corners) {
+      const int next = name(n);
+      s.solid.edges.push_back({last, next});
+      last = next;
+    }
+    s.solid.faces.push_back({s.solid.edges.size(), Origin::solid});
+  }
+}
+
+bool all_beyond(const CutSolid& solid, const HalfSpace& plane) {
+  return std::all_of(solid.points.begin(), solid.points.end(),
+                     [&](const Vec3& p) { return plane.normal.dot(p) >= plane.offset; });
+}
+
+/// Keeps what of s.solid lies within the plane and closes it with a face there. Each face that the plane cuts
+/// is closed from where its outline leaves to where it enters; these joints reversed are the new face. An
+/// edge is cut from its end inside, so at the same point for both of its faces. False if nothing is left.
+bool clip_solid(Scratch& s, const HalfSpace& plane, Origin origin) {
+  const std::size_t count = s.solid.points.size();
+  s.heights.resize(count);
+  s.names.resize(count);
+  s.kept.clear();
+  for (std::size_t n = 0; n < count; ++n) {
+    s.heights[n] = plane.normal.dot(s.solid.points[n]) - plane.offset;
+    s.names[n] = s.heights[n] < 0 ? s.kept.add(s.solid.points[n]) : -1;
+  }
+  if (s.kept.points.size() == count) return true;
+  if (s.kept.points.empty()) return false;
+  s.lid.clear();
+  const auto cut = [&](int inside, int outside) {
+    const std::size_t n = static_cast<std::size_t>(inside), m = static_cast<std::size_t>(outside);
+    const Vec3 &p = s.solid.points[n], &q = s.solid.points[m];
+    return s.kept.add(p + s.heights[n] / (s.heights[n] - s.heights[m]) * (q - p));
+  };
+  for (std::size_t n = 0, k = 0; n < s.solid.faces.size(); ++n) {
+    const std::size_t first_edge = s.kept.edges.size(), first_joint = s.lid.size();
+    std::size_t enters = first_joint, leaves = first_joint;
+    const auto joint = [&](std::size_t j) -> CutEdge& {
+      if (j == s.lid.size()) s.lid.emplace_back();
+      return s.lid[j];
+    };
+    for (; k < s.solid.faces[n].end; ++k) {
+      const CutEdge& e = s.solid.edges[k];
+      const int from = s.names[static_cast<std::size_t>(e.from)],
+                to = s.names[static_cast<std::size_t>(e.to)];
+      if (from >= 0 && to >= 0) {
+        s.kept.edges.push_back({from, to});
+      } else if (from >= 0) {
+        s.kept.edges.push_back({from, joint(leaves++).to = cut(e.from, e.to)});
+      } else if (to >= 0) {
+        s.kept.edges.push_back({joint(enters++).from = cut(e.to, e.from), to});
+      }
+    }
+    for (std::size_t j = first_joint; j < s.lid.size(); ++j)
+      s.kept.edges.push_back({s.lid[j].to, s.lid[j].from});
+    if (s.kept.edges.size() > first_edge)
+      s.kept.faces.push_back({s.kept.edges.size(), s.solid.faces[n].origin});
+  }
+  s.kept.edges.insert(s.kept.edges.end(), s.lid.begin(), s.lid.end());
+  s.kept.faces.push_back({s.kept.edges.size(), origin});
+  std::swap(s.solid, s.kept);
+  return true;
+}
 
 /// A box along the axes.
 struct Box {
@@ -136,13 +263,6 @@ bool planes_near(Scratch& s, const Polytope& p, const Mat3& rotation, const Vec3
       s.planes.push_back({normal, offset});
     }
   }
-  return true;
-}
-
-/// Clips s.polygon by the planes but one. False if nothing is left.
-bool clip_all(Scratch& s, std::span<const HalfSpace> planes, std::size_t skip) {
-  for (std::size_t n = 0; n < planes.size(); ++n)
-    if (n != skip && !clip(s, planes[n])) return false;
   return true;
 }
 
@@ -272,45 +392,45 @@ Overlap overlap_polytopes(const Polytope& a, const Polytope& b, const Mat3& rota
 Overlap overlap_cell(const Polytope& a, std::span<const HalfSpace> planes) {
   Overlap o;
   Scratch& s = scratch();
-  s.cell.clear();
+  s.planes.clear();
   bool first_cuts = false;
-  const double hair = kHair * a.radius;  // as in overlap_polytopes
-  for (std::size_t n = 0; n < planes.size(); ++n) {
-    const double height = planes[n].normal.dot(a.centre) - planes[n].offset;
+  const double hair = kHair * a.radius;  // as in overlap_polytopes, but here the cell is made smaller
+  for (const HalfSpace& p : planes) {
+    const HalfSpace plane{p.normal, p.offset - hair};
+    const double height = plane.normal.dot(a.centre) - plane.offset;
     if (height >= a.radius) return o;
     if (height <= -a.radius) continue;
     double low = a.radius, high = -a.radius;
     for (const Vec3& v : a.vertices) {
-      const double h = planes[n].normal.dot(v) - planes[n].offset;
+      const double h = plane.normal.dot(v) - plane.offset;
       low = std::min(low, h);
       high = std::max(high, h);
     }
     if (low >= 0) return o;
-    if (high < -hair) continue;
-    first_cuts = first_cuts || n == 0;
-    s.cell.push_back(planes[n]);
+    if (high < 0) continue;
+    first_cuts = first_cuts || &p == planes.data();
+    s.planes.push_back(plane);
   }
-  Sums sums;
-  bool started = false;
-  if (!s.cell.empty())
-    sums.apex = a.centre + (s.cell[0].offset - s.cell[0].normal.dot(a.centre)) * s.cell[0].normal;
-  started = !s.cell.empty();  // on the first plane: its lid spans no volume
-  s.planes = s.cell;
-  s.cut_shared = s.planes.size();
-  add_faces(s, sums, started, a, a.vertices, Box{}, hair);
-  for (std::size_t k = 0; k < s.cell.size(); ++k) {
-    const Vec3& normal = s.cell[k].normal;
-    const Vec3 middle = a.centre + (s.cell[k].offset - normal.dot(a.centre)) * normal;
-    const Vec3 u = 2 * a.radius * normal.unitOrthogonal(), v = normal.cross(u);
-    s.polygon.assign({middle - u - v, middle + u - v, middle + u + v, middle - u + v});
-    if (!clip_all(s, s.cell, k)) continue;
-    bool left = true;
-    for (std::size_t f = 0; f < a.faces.size() && left; ++f)
-      left = clip(s, {a.faces[f].normal, a.faces[f].offset + hair});
-    if (!left) continue;
-    const Vec3 lid = sums.add(s.polygon);
-    o.area += lid;
-    if (k == 0 && first_cuts) o.first = lid.norm();
+  Sums sums{.apex = a.centre};
+  if (s.planes.empty()) {
+    load_solid(s, a, {Vec3::UnitZ(), std::numeric_limits<double>::infinity()});
+  } else {
+    const HalfSpace& first = s.planes.front();
+    sums.apex -= (first.normal.dot(a.centre) - first.offset) * first.normal;  // its lid spans no volume
+    load_solid(s, a, first);
+    clip_solid(s, first, first_cuts ? Origin::first_plane : Origin::plane);
+    const auto rest = std::span(s.planes).subspan(1);
+    if (std::any_of(rest.begin(), rest.end(), [&](const HalfSpace& p) { return all_beyond(s.solid, p); }))
+      return o;
+    for (const HalfSpace& p : rest)
+      if (!clip_solid(s, p, Origin::plane)) return o;
+  }
+  for (std::size_t n = 0, begin = 0; n < s.solid.faces.size(); begin = s.solid.faces[n++].end) {
+    const CutFace& f = s.solid.faces[n];
+    const Vec3 area = sums.add(s.solid, std::span(s.solid.edges).subspan(begin, f.end - begin));
+    if (f.origin == Origin::solid) continue;
+    o.area += area;
+    if (f.origin == Origin::first_plane) o.first = area.norm();
   }
   if (!(sums.volume > 0)) return {};
   o.volume = sums.volume;

@@ -44,6 +44,10 @@ void apply_law(SolidPair& pair, Meeting& m, const PairConstants<double>& p, bool
   const Touch& t = pair.touch;
   ContactHistory& h = pair.history;
   Contact<double>& c = m.contact;
+  // Of springs side by side those that a growing face comes to lie on are not stretched yet. What they resist
+  // twisting with goes with the square of the area.
+  const double twisting_now = 0.5 * m.spring.tangential * t.patch_radius * t.patch_radius;
+  if (h.twist.stiffness < twisting_now) h.slip = std::sqrt(h.twist.stiffness / twisting_now) * h.slip;
   const ContactForce<double> f = contact_force(m.spring, c, p, tension, dt, h.slip);
   const Vec3 spin = m.a.spin - m.b.spin;
   pair.force = vec(f.force);
@@ -256,6 +260,9 @@ double SolidContacts::apply_laws(const World& world, int begin, int end, double 
     m.least = m.most = t.thickness > 0 ? force * t.depth : m.spring.energy;
     if (t.thickness > 0) {
       m.spring.stiffening = 0.0;
+      // As wide as it is, in the ratio of the law: springs side by side, along the face as across it.
+      const double drag = world.constants(m).drag;
+      m.spring.tangential = drag * drag * force / t.thickness;
       if (!(t.depth > 0)) {
         m.least = kLeastDepth * force * t.thickness;
         m.most = kMostDepth * force * t.thickness;

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <vector>
 
 namespace ejecta {
 namespace {
@@ -83,6 +84,50 @@ TEST(Overlap, AreaIsTheSlopeOfTheVolume) {
         (2 * d);
     EXPECT_NEAR(slope, overlap_half_space(box, n, offset).area.norm(), 1e-4);
   }
+}
+
+/// A cell is cut out another way than what two solids share.
+TEST(Overlap, OfACellIsThatOfTheSolidWithItsPlanes) {
+  const Polytope b = polytope_box(Vec3(0.5, 0.4, 0.3));
+  for (const int level : {0, 2})
+    for (int n = 0; n < 200; ++n) {
+      const Polytope a = level == 0 ? polytope_box(Vec3(0.3, 0.6, 0.2)) : convex_hull(icosphere(1).vertices);
+      const Mat3 rotation = turn(0.37 * n, Vec3(std::sin(n), std::cos(3 * n), std::sin(5 * n + 1)));
+      const Vec3 at = 0.9 * Vec3(std::cos(7 * n), std::sin(2 * n), std::cos(11 * n));
+      std::vector<HalfSpace> planes;
+      for (const Polytope::Face& f : b.faces) {
+        const Vec3 normal = rotation * f.normal;
+        planes.push_back({normal, f.offset + normal.dot(at)});
+      }
+      const Overlap o = overlap_cell(a, planes), right = overlap_polytopes(a, b, rotation, at);
+      ASSERT_NEAR(o.volume, right.volume, 1e-9) << n;
+      if (right.volume < 1e-6) continue;
+      EXPECT_LT((o.centroid - right.centroid).norm(), 1e-6) << n;
+      EXPECT_LT((o.area - right.area).norm(), 1e-8) << n;
+    }
+}
+
+/// Cells that fill a space share it out, but for the hair by which each is smaller.
+TEST(Overlap, CellsSideBySideHoldWhatOneHolds) {
+  const Polytope a = moved(polytope_box(Vec3(0.3, 0.6, 0.2)), turn(0.4, Vec3(1, 2, 3)), Vec3(0.1, 0.2, 0.05));
+  const HalfSpace floor{Vec3::UnitZ(), 0.0};
+  const Overlap whole = overlap_cell(a, std::vector{floor});
+  double volume = 0.0, area = 0.0;
+  for (int i = -5; i < 5; ++i)
+    for (int j = -5; j < 5; ++j) {
+      const double x = 0.2 * i, y = 0.2 * j;
+      const std::vector<HalfSpace> cell{floor,
+                                        {Vec3::UnitX(), x + 0.2},
+                                        {-Vec3::UnitX(), -x},
+                                        {Vec3::UnitY(), y + 0.2},
+                                        {-Vec3::UnitY(), -y}};
+      const Overlap part = overlap_cell(a, cell);
+      volume += part.volume;
+      area += part.first;
+    }
+  EXPECT_NEAR(volume, whole.volume, 1e-8);
+  EXPECT_NEAR(area, whole.first, 1e-8);
+  EXPECT_NEAR(whole.volume, overlap_half_space(a, floor.normal, floor.offset).volume, 1e-9);
 }
 
 }  // namespace

@@ -176,5 +176,73 @@ TEST(Restitution, OfEveryShapeOnEachOther) {
   }
 }
 
+/// A prism whose outline is `corners` in turn, from z = low to high.
+std::vector<Vec3> prism(const std::vector<Vec3>& corners, double low, double high) {
+  std::vector<Vec3> points;
+  for (const Vec3& p : corners)
+    for (const double z : {low, high}) points.emplace_back(p.x(), p.y(), z);
+  return points;
+}
+
+std::vector<Vec3> regular(int sides, double radius) {
+  std::vector<Vec3> corners;
+  for (int n = 0; n < sides; ++n) {
+    const double angle = 2 * M_PI * (n + 0.5) / sides;
+    corners.emplace_back(radius * std::cos(angle), radius * std::sin(angle), 0.0);
+  }
+  return corners;
+}
+
+/// Whatever of a body's sides lies over those of what it falls on, in or within them: its face is pressed
+/// along its normal and nothing slides. Prisms on pads under their corners, two of whose sides are flush with
+/// theirs, which stick out by `over`; and, turned by `yaw` about their axis, on a block of their own outline.
+/// Everything is turned by one angle more. (Pads that are bodies have a dashpot each, which walls have not:
+/// together they damp more than asked.)
+TEST(Restitution, WithFrictionWhereEdgesCoincide) {
+  constexpr double kRadius = 14e-3, kPad = 5e-3, kHigh = 20e-3, kFast = 1.0, kHair = 1e-6;  // m, m/s
+  const Quat turn(Eigen::AngleAxisd(0.7, Vec3(1, 2, 3).normalized()));
+  const auto check = [&](double e, int sides, bool pads, double over, double yaw, bool mesh) {
+    Case c = elastic(e);
+    c.materials[0].friction = 0.5;
+    const Materials materials(c);
+    Particles p(Vec3(0, 0, 0), materials, c.contact);
+    Body b = body_of("prism", make_polyhedron(prism(regular(sides, kRadius), 0.0, kHigh)), materials);
+    b.orientation = turn * Quat(Eigen::AngleAxisd(yaw, Vec3::UnitZ())) * b.orientation;
+    b.position = turn * Vec3(0, 0, 0.5 * kHigh + kHair);
+    b.velocity = turn * Vec3(0, 0, -kFast);
+    p.add(b);
+    const auto stand = [&](std::vector<Vec3> points, const Vec3& by) {
+      for (Vec3& v : points) v = turn * (v + by);
+      if (mesh) {
+        p.add(wall_of(triangles_of(convex_hull(points))));
+      } else {
+        Body pad = body_of("pad", make_polyhedron(points), materials);
+        pad.position = pad.shape.frame().centre;
+        pad.motion = Motion::fixed;
+        p.add(pad);
+      }
+    };
+    const std::vector<Vec3> outline = regular(sides, kRadius);
+    const auto at = [&](int n) { return outline[static_cast<std::size_t>((n + sides) % sides)]; };
+    for (int n = 0; n < sides && pads; ++n) {
+      const Vec3 u = kPad * (at(n + 1) - at(n)).normalized(), v = kPad * (at(n - 1) - at(n)).normalized();
+      stand(prism({at(n), at(n) + u, at(n) + u + v, at(n) + v}, -kPad, 0.0), over * at(n).normalized());
+    }
+    if (!pads) stand(prism(outline, -kHigh, 0.0), Vec3(over, 0, 0));
+    const double before = p.energy().kinetic;
+    collide(p);
+    EXPECT_NEAR(std::sqrt(p.energy().kinetic / before), e, 0.02)
+        << sides << " sides on " << (pads ? "pads" : "a block") << (mesh ? " of a mesh" : "") << ", over "
+        << over << " m, yaw " << yaw;
+  };
+  for (const double e : {0.5, 1.0})
+    for (const int sides : {4, 5, 6})
+      for (const bool mesh : {true, false}) {
+        for (const double over : {-kHair, 0.0, kHair, 1e-3})
+          if (e == 1.0 || mesh) check(e, sides, true, over, 0.0, mesh);
+        for (const double yaw : {0.0, 0.1, 0.5}) check(e, sides, false, kHair, yaw, mesh);
+      }
+}
+
 }  // namespace
 }  // namespace ejecta
