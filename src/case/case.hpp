@@ -270,6 +270,7 @@ struct CouplingSpec {
   GrainDragLaw drag = GrainDragLaw::di_felice;
   GrainExchange exchange = GrainExchange::two_way;
   double kernel_width = 3.0;  ///< over which a grain is mapped, in grain diameters
+  bool dispersion = false;    ///< of grains by turbulence
 };
 
 /// [launch]: the free flight from the belt to the jet (paper 2.2.5). The body crosses the jet's axis

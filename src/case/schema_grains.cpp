@@ -66,7 +66,10 @@ std::vector<Key> keys(CouplingSpec& s) {
        none,
        {1.0, 20.0},
        "Width over which a grain is spread and sees the fluid, in its diameters; never less than two cells",
-       "2 to 3 diameters are usual"}};
+       "2 to 3 diameters are usual"},
+      {"dispersion", &s.dispersion, none, anything,
+       "Turbulence spreads grains: each meets eddies with a velocity of their own, drawn at random",
+       "Gosman & Ioannides 1983"}};
 }
 
 }  // namespace ejecta

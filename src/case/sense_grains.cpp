@@ -227,6 +227,11 @@ void sense_grains(const Case& c, Findings& found) {
   if (flows && !(c.fluid.viscosity > 0.0))
     found.error("fluid.viscosity", "drag laws of grains need a viscosity", "a viscosity, more than 0",
                 "viscosity = \"1.8e-5 Pa s\"");
+  if (c.coupling.dispersion && (!flows || c.flow.turbulence == TurbulenceModel::laminar))
+    found.error(
+        "coupling.dispersion",
+        flows ? "laminar flow has no eddies that spread grains" : "there is no flow that spreads grains",
+        "a turbulence model, or no dispersion", "[flow] turbulence = \"k-epsilon\"");
   if (flows) check_periodic_sides(c, found);
   if (flows) warn_of_open_sides(c, found);
   for (std::size_t n = 0; n < c.grains.size(); ++n) {

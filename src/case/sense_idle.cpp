@@ -249,7 +249,7 @@ void sense_idle(const Case& c, Findings& found) {
                     c.stream.velocity.z()));
   if (c.grains.empty())
     table("coupling")
-        .refuse({"drag", "exchange", "kernel_width"}, "there are no [[grains]]",
+        .refuse({"drag", "exchange", "kernel_width", "dispersion"}, "there are no [[grains]]",
                 "[[grains]], or no [coupling]", "[[grains]] size = \"0.1 mm\"");
   if (!(c.manifold.vessel > 0.0))
     table("sorter.manifold")

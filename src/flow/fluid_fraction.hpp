@@ -7,6 +7,14 @@
 /// Coupling fills everything above the line "results"; plain data, SI units.
 namespace ejecta {
 
+/// What grains see of a flow where they begin a step.
+struct FluidSeen {
+  std::array<ConstFieldView, 3> velocity;  ///< m/s
+  ConstFieldView density{};                ///< of a gas, kg/m3; origin null: that of the fluid at rest
+  ConstFieldView k{}, dissipation{};       ///< turbulence, m2/s2, m2/s3; origin null: laminar
+  bool specific = false;                   ///< the dissipation is omega, 1/s
+};
+
 struct FluidFraction {
   explicit FluidFraction(const Grid& grid) {
     for (Field* f : {&solids_before, &solids, &drag, &work}) *f = grid.make_field();

@@ -242,7 +242,7 @@ void CoupledOutputs::write_replay(double time) {
     for (std::size_t r = 0; r < samplers_.size(); ++r) {
       output::SliceFrame slice;
       slice.raster = static_cast<int>(r);
-      const auto u = model_.flow()->velocity();
+      const auto u = model_.flow()->seen().velocity;
       samplers_[r].sample(u[0], u[1], u[2], slice);
       frame.slices.push_back(std::move(slice));
     }

@@ -107,7 +107,7 @@ void add_errors(const CoupledModel& m, double time, Json& result) {
     result["errors"][name + "_l2"] = std::sqrt(sum / volume);
     result["errors"][name + "_max"] = largest;
   };
-  const auto u = m.flow()->velocity();
+  const auto u = m.flow()->seen().velocity;
   if (exact.velocity)
     for (int d = 0; d < 3; ++d) {
       if (!g.active(d)) continue;
@@ -155,7 +155,7 @@ void add_round_jet(const CoupledModel& m, double time, Json& result) {
   };
   const double d = c.valve.orifice_diameter, z0 = c.jet.nozzle.z();
   if (const auto jet =
-          analyse_round_jet(m.grid(), m.flow()->velocity()[2], field("pressure"), field("eddy_viscosity"),
+          analyse_round_jet(m.grid(), m.flow()->seen().velocity[2], field("pressure"), field("eddy_viscosity"),
                             c.fluid.viscosity / c.fluid.density, d, m.inflow().fastest(time), z0 + 30.0 * d,
                             z0 + 0.8 * (m.grid().axis(2).face.back() - z0)))
     result["round_jet"] = {{"decay", jet->far.decay},

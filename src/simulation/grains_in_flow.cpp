@@ -37,6 +37,8 @@ UnresolvedSetup setup_of(const Case& c, double fluid_density) {
   s.kernel_width = c.coupling.kernel_width;
   s.drag = law_of(c).find;
   s.acts = c.coupling.exchange == GrainExchange::two_way;
+  s.disperses = c.coupling.dispersion;
+  s.seed = static_cast<std::uint64_t>(c.grains.front().seed);
   s.works = s.acts && c.flow.solver == FlowSolver::compressible_piso;
   for (std::size_t d = 0; d < 3; ++d)
     s.beyond[d] = {beyond_face(c.boundary[2 * d]), beyond_face(c.boundary[2 * d + 1])};
@@ -57,7 +59,7 @@ void GrainsInFlow::map(const Particles& particles, const FlowModel& flow, const 
   here_.resize(grains.size());
   for (std::size_t n = 0; n < grains.size(); ++n)
     here_[n] = particles.presence(static_cast<int>(first_ + n)) == Presence::here;
-  coupling_.map(grains, here_, flow.velocity(), flow.densities(), cut, dt, fraction_);
+  coupling_.map(grains, here_, flow.seen(), cut, dt, fraction_);
   largest_reynolds_ = std::max(largest_reynolds_, coupling_.extremes().reynolds);
   least_fraction_ = std::min(least_fraction_, coupling_.extremes().fraction);
 }

@@ -70,7 +70,9 @@ struct DustyGas {
     CutCells none;
     const auto& w = flow.primitive();
     coupling.map(grains, std::vector<char>(grains.size(), 1),
-                 {w[gas::kU].view(), w[gas::kV].view(), w[gas::kW].view()}, w[gas::kRho].view(), none, dt, f);
+                 {.velocity = {w[gas::kU].view(), w[gas::kV].view(), w[gas::kW].view()},
+                  .density = w[gas::kRho].view()},
+                 none, dt, f);
     flow.advance(dt, none, f);
     coupling.collect(grains, std::vector<char>(grains.size(), 1), f, loads);
     for (std::size_t n = 0; n < grains.size(); ++n) {

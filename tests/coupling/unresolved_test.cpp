@@ -96,7 +96,7 @@ TEST(UnresolvedCoupling, VolumeIsExactAtWallsAndAcrossPeriodicSides) {
     UnresolvedCoupling coupling(grid, air(sides));
     FluidFraction f(grid);
     const Field still = grid.make_field();
-    coupling.map(grains, std::vector<char>(grains.size(), 1), {still.view(), still.view(), still.view()}, {},
+    coupling.map(grains, std::vector<char>(grains.size(), 1), {{still.view(), still.view(), still.view()}},
                  {}, 1e-3, f);
     // A sum over the cells: each of its additions may be off by half of the last digit.
     const double digits = 0.5 * static_cast<double>(grid.cells()) * std::numeric_limits<double>::epsilon();
@@ -121,7 +121,7 @@ TEST(UnresolvedCoupling, ActionIsReaction) {
           f.push[std::size_t(c)](i, j, k) = Real(std::sin(i * j + k + c));
         }
   const std::vector<char> here(grains.size(), 1);
-  coupling.map(grains, here, {u[0].view(), u[1].view(), u[2].view()}, {}, {}, 1e-3, f);
+  coupling.map(grains, here, {{u[0].view(), u[1].view(), u[2].view()}}, {}, 1e-3, f);
   std::vector<Load> loads(grains.size());
   coupling.collect(grains, here, f, loads);
   Vec3 on_grains(0, 0, 0), by_drag(0, 0, 0), from_fluid(0, 0, 0);
@@ -157,7 +157,7 @@ TEST(UnresolvedCoupling, AnyNumberOfThreadsGivesTheSameBits) {
     FluidFraction f(grid);
     Field u = grid.make_field();
     u.fill(Real(1.5));
-    coupling.map(grains, here, {u.view(), u.view(), u.view()}, {}, {}, 1e-3, f);
+    coupling.map(grains, here, {{u.view(), u.view(), u.view()}}, {}, 1e-3, f);
     std::vector<Load> loads(grains.size());
     coupling.collect(grains, here, f, loads);
     std::vector<Real> numbers;
@@ -190,7 +190,7 @@ TEST(UnresolvedCoupling, DragIsTheExactRelaxationForAnyStep) {
     for (Field& seen : f.seen) seen = u;
     std::vector<Body> grains{grain_at({5e-3, 5e-3, 5e-3}, d)};
     const double dt = steps * tau;
-    coupling.map(grains, {1}, {u.view(), u.view(), u.view()}, {}, {}, dt, f);
+    coupling.map(grains, {1}, {{u.view(), u.view(), u.view()}}, {}, dt, f);
     std::vector<Load> loads(1);
     coupling.collect(grains, {1}, f, loads);
     const Vec3 after = dt * (loads[0].force / grains[0].mass + setup.gravity);
@@ -229,7 +229,7 @@ struct Stirred {
   void advance(double time, double dt) {
     const std::vector<char> here(grains.size(), 1);
     CutCells none;
-    coupling.map(grains, here, flow.velocity(), {}, none, dt, f);
+    coupling.map(grains, here, {flow.velocity()}, none, dt, f);
     flow.advance(time, dt, none, f);
     coupling.collect(grains, here, f, loads);
     for (Body& b : grains) b.position += dt * b.velocity;
@@ -342,7 +342,7 @@ TEST(FluidWithGrains, GrainsThatDoNotActChangeNoBit) {
         flow.advance(n * 1e-4, 1e-4, none);
         continue;
       }
-      coupling.map(grains, std::vector<char>(grains.size(), 1), flow.velocity(), {}, none, 1e-4, f);
+      coupling.map(grains, std::vector<char>(grains.size(), 1), {flow.velocity()}, none, 1e-4, f);
       flow.advance(n * 1e-4, 1e-4, none, f);
     }
     std::vector<Real> cells;

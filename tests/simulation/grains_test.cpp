@@ -55,18 +55,30 @@ position = ["24 mm", "16 mm", "16 mm"]
 
 struct Dusty {
   std::string solver;
-  bool ball;  ///< in the stream
+  bool ball;               ///< in the stream
+  bool turbulent = false;  ///< and fines spread by eddies
   Case parsed() const {
     std::string text = kDusty;
-    text.replace(text.find("SOLVER"), 6, solver);
+    const auto replace = [&](const std::string& what, const std::string& by) {
+      text.replace(text.find(what), what.size(), by);
+    };
+    replace("SOLVER", solver);
+    if (turbulent) {
+      replace("laminar", "k-epsilon");
+      replace("[[grains]]",
+              "k = \"1 m2/s2\"\nepsilon = \"50 m2/s3\"\n[coupling]\ndispersion = true\n[[grains]]");
+    }
     return parse_case(text + (ball ? kBall : ""), "dusty");
   }
-  std::string name() const { return solver + (ball ? " with a ball" : ""); }
+  std::string name() const {
+    return solver + (ball ? " with a ball" : "") + (turbulent ? " and eddies" : "");
+  }
 };
 const std::vector<Dusty> kAll{{"incompressible", false},
                               {"incompressible", true},
                               {"compressible-piso", false},
-                              {"compressible-piso", true}};
+                              {"compressible-piso", true},
+                              {"incompressible", false, true}};
 
 nlohmann::ordered_json grain_run_figures(Result r) {
   for (const char* key : {"wall_time_s", "cell_steps_per_s", "threads", "operators"}) r.quantities.erase(key);

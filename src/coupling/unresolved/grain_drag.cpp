@@ -52,6 +52,12 @@ EJECTA_KERNEL Response response(Surroundings s, double seen, double own, double 
 
 }  // namespace
 
+void Batch::fill_up(std::size_t count) {
+  for (Numbers* all : {&diameter, &volume, &mass, &is_free, &fraction, &fluid_density, &density, &spread,
+                       &slip[0], &slip[1], &slip[2], &acceleration[0], &acceleration[1], &acceleration[2]})
+    std::fill(*all + count, *all + kSize, (*all)[count - 1]);
+}
+
 template <double (*law)(const Surroundings&)>
 void find_drag(const Step& step, Batch& b) {
   constexpr double kShort = 0.01;  // relaxation times

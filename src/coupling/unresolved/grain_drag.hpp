@@ -24,6 +24,8 @@ struct Batch {
   Numbers slip[3], acceleration[3];  ///< seen less own velocity, m/s; by all but drag, m/s2
   Numbers coefficient, reynolds;     ///< results: beta of the step, kg/s; at its beginning
   Numbers gain[3];                   ///< result, m/s: what of `acceleration` the drag meets
+  /// The last of `count` grains stands for those that are not there.
+  void fill_up(std::size_t count);
 };
 
 /// Fills the results of a batch. m dv/dt = m a + beta (u - v) over dt with beta held: its mean drag is

@@ -6,11 +6,12 @@
 
 #include "base/parallel.hpp"
 #include "base/state_reader.hpp"
+#include "flow/turbulence/closures.hpp"
 
 namespace ejecta {
 
 UnresolvedCoupling::UnresolvedCoupling(const Grid& grid, const UnresolvedSetup& setup)
-    : grid_(grid), setup_(setup), map_(grid, setup.beyond, setup.kernel_width) {}
+    : grid_(grid), setup_(setup), map_(grid, setup.beyond, setup.kernel_width), eddies_(setup.seed) {}
 
 void UnresolvedCoupling::note_grains(std::span<const Body> grains) {
   for (std::size_t n = diameters_.size(); n < grains.size(); ++n) {
@@ -19,11 +20,11 @@ void UnresolvedCoupling::note_grains(std::span<const Body> grains) {
     masses_.push_back(grains[n].mass);
   }
   pushed_.resize(grains.size(), Vec3(0, 0, 0));
+  if (setup_.disperses) eddies_.grow(grains.size());
 }
 
 void UnresolvedCoupling::map(std::span<const Body> grains, const std::vector<char>& here,
-                             const std::array<ConstFieldView, 3>& velocity, ConstFieldView density,
-                             const CutCells& cut, double dt, FluidFraction& f) {
+                             const FluidSeen& fluid, const CutCells& cut, double dt, FluidFraction& f) {
   note_grains(grains);
   map_.place(grains, here, diameters_, cut);
   std::swap(f.solids_before, f.solids);
@@ -31,7 +32,7 @@ void UnresolvedCoupling::map(std::span<const Body> grains, const std::vector<cha
   if (!mapped_) f.solids_before = f.solids;  // they are there from the beginning
   mapped_ = true;
   dt_ = dt;
-  find_drags(grains, {velocity[0], velocity[1], velocity[2], f.solids.view(), density}, dt);
+  find_drags(grains, fluid, f.solids.view(), dt);
   const double inverse = 1 / setup_.fluid_density;
   map_.scatter<4>({f.drag.view(), f.dragging[0].view(), f.dragging[1].view(), f.dragging[2].view()},
                   [&](std::size_t at) {
@@ -41,8 +42,8 @@ void UnresolvedCoupling::map(std::span<const Body> grains, const std::vector<cha
                   });
 }
 
-void UnresolvedCoupling::find_drags(std::span<const Body> grains, const std::array<ConstFieldView, 5>& fields,
-                                    double dt) {
+void UnresolvedCoupling::find_drags(std::span<const Body> grains, const FluidSeen& fluid,
+                                    ConstFieldView solids, double dt) {
   constexpr std::size_t kSize = drag::Batch::kSize;
   static_assert(kGrainBlock % kSize == 0);
   const bool wakes = setup_.acts && grid_.active(0) && grid_.active(1) && grid_.active(2);
@@ -52,8 +53,10 @@ void UnresolvedCoupling::find_drags(std::span<const Body> grains, const std::arr
   for_each_grain_block(map_.size(), [&](std::size_t b, std::size_t begin, std::size_t end) {
     for (; begin < end; begin += kSize) {
       drag::Batch batch;
-      for (std::size_t n = 0; n < kSize; ++n)  // the last batch is filled with its last grain
-        look_around(grains, std::min(begin + n, end - 1), fields, batch, n);
+      std::array<Vec3, kSize> eddy;
+      for (std::size_t n = 0; n < std::min(kSize, end - begin); ++n)
+        eddy[n] = look_around(grains, begin + n, fluid, solids, dt, batch, n);
+      batch.fill_up(std::min(kSize, end - begin));
       if (setup_.drag) setup_.drag(step, batch);
       for (std::size_t n = 0; n < std::min(kSize, end - begin); ++n) {
         const GrainMap::Place& p = map_[begin + n];
@@ -64,7 +67,7 @@ void UnresolvedCoupling::find_drags(std::span<const Body> grains, const std::arr
         met[b].reynolds = std::max(met[b].reynolds, batch.reynolds[n]);
         drags_[begin + n] = {batch.coefficient[n],
                              grains[map_.grain(begin + n)].velocity +
-                                 Vec3(batch.gain[0][n], batch.gain[1][n], batch.gain[2][n])};
+                                 Vec3(batch.gain[0][n], batch.gain[1][n], batch.gain[2][n]) - eddy[n]};
       }
     }
   });
@@ -73,20 +76,23 @@ void UnresolvedCoupling::find_drags(std::span<const Body> grains, const std::arr
     extremes_ = {std::max(extremes_.reynolds, m.reynolds), std::min(extremes_.fraction, m.fraction)};
 }
 
-/// What the drag on the grain of a place depends on, as number n of a batch.
-void UnresolvedCoupling::look_around(std::span<const Body> grains, std::size_t at,
-                                     const std::array<ConstFieldView, 5>& fields, drag::Batch& batch,
-                                     std::size_t n) const {
+Vec3 UnresolvedCoupling::look_around(std::span<const Body> grains, std::size_t at, const FluidSeen& fluid,
+                                     ConstFieldView solids, double dt, drag::Batch& batch, std::size_t n) {
   constexpr double kLeastFraction = 0.05;
   const GrainMap::Place& p = map_[at];
   const std::size_t g = map_.grain(at);
   const Body &grain = grains[g], &later = grains[map_.grain_ahead(at, map_.size() - 1)];
   __builtin_prefetch(&later.velocity);
   __builtin_prefetch(&later.motion);
-  const auto seen = map_.gather<4>(at, {fields[0], fields[1], fields[2], fields[3]});
+  const auto seen = map_.gather<4>(at, {fluid.velocity[0], fluid.velocity[1], fluid.velocity[2], solids});
   const double inverse = p.inside > 0 ? 1 / p.inside : 0.0;
-  batch.fluid_density[n] =
-      fields[4].origin && p.inside > 0 ? inverse * map_.gather<1>(at, {fields[4]})[0] : setup_.fluid_density;
+  batch.fluid_density[n] = fluid.density.origin && p.inside > 0
+                               ? inverse * map_.gather<1>(at, {fluid.density})[0]
+                               : setup_.fluid_density;
+  const Vec3 slip = inverse * Vec3(seen[0], seen[1], seen[2]) - grain.velocity;
+  const Vec3 eddy = setup_.disperses && p.inside > 0
+                        ? eddy_around(at, fluid, slip, batch.fluid_density[n], dt)
+                        : Vec3(0, 0, 0);
   batch.diameter[n] = diameters_[g];
   batch.volume[n] = volumes_[g];
   batch.mass[n] = masses_[g];
@@ -96,9 +102,24 @@ void UnresolvedCoupling::look_around(std::span<const Body> grains, std::size_t a
   batch.spread[n] = p.spread;
   for (int c = 0; c < 3; ++c) {
     const std::size_t d = static_cast<std::size_t>(c);
-    batch.slip[d][n] = inverse * seen[d] - grain.velocity[c];
+    batch.slip[d][n] = slip[c] + eddy[c];
     batch.acceleration[d][n] = setup_.gravity[c] + pushed_[g][c];
   }
+  return eddy;
+}
+
+/// Of a grain that looks at the turbulence of its cells.
+Vec3 UnresolvedCoupling::eddy_around(std::size_t at, const FluidSeen& fluid, const Vec3& slip,
+                                     double fluid_density, double dt) {
+  const double inverse = 1 / map_[at].inside;
+  const std::size_t g = map_.grain(at);
+  const auto turbulence = map_.gather<2>(at, {fluid.k, fluid.dissipation});
+  EddyAround around{.k = inverse * turbulence[0], .epsilon = inverse * turbulence[1], .slip = slip.norm()};
+  if (fluid.specific) around.epsilon *= k_epsilon::kCmu * around.k;
+  const drag::Surroundings alone{diameters_[g], around.slip, 1.0, fluid_density,
+                                 setup_.viscosity * (setup_.fluid_density / fluid_density)};
+  around.relaxation = masses_[g] / drag::schiller_naumann(alone);
+  return eddies_.velocity(g, around, dt);
 }
 
 void UnresolvedCoupling::collect(std::span<const Body> grains, const std::vector<char>& here,
@@ -150,6 +171,7 @@ void UnresolvedCoupling::find_work(std::span<const Body> grains, FluidFraction& 
 std::vector<double> UnresolvedCoupling::state() const {
   std::vector<double> out{mapped_ ? 1.0 : 0.0};
   for (const Vec3& v : pushed_) out.insert(out.end(), v.data(), v.data() + 3);
+  eddies_.add_state(out);
   return out;
 }
 
@@ -158,6 +180,7 @@ void UnresolvedCoupling::restore(std::span<const double> state, std::size_t grai
   mapped_ = in.whole(0, 1) == 1;
   pushed_.assign(mapped_ ? grains : 0, Vec3(0, 0, 0));
   for (Vec3& v : pushed_) v = in.vec3();
+  if (setup_.disperses) eddies_.restore(in, pushed_.size());
   in.end();
 }
 

@@ -3,6 +3,7 @@
 #include <span>
 #include <vector>
 
+#include "coupling/unresolved/eddy_walk.hpp"
 #include "coupling/unresolved/grain_drag.hpp"
 #include "coupling/unresolved/grain_map.hpp"
 #include "dem/body.hpp"
@@ -23,6 +24,8 @@ struct UnresolvedSetup {
   std::array<std::array<Beyond, 2>, 3> beyond{};
   bool acts = true;           ///< on the fluid: what a grain sees is then taken without its own wake
   double kernel_width = 3.0;  ///< in grain diameters
+  bool disperses = false;     ///< turbulence spreads grains (eddy_walk.hpp)
+  std::uint64_t seed = 0;     ///< of its eddies
   void (*drag)(const drag::Step&, drag::Batch&) = nullptr;  ///< of a law, grain_drag.hpp; null: none
 };
 
@@ -46,12 +49,10 @@ class UnresolvedCoupling {
  public:
   UnresolvedCoupling(const Grid& grid, const UnresolvedSetup& setup);
 
-  /// Fills what stands above "results" for a step of dt (s). `here`: which grains are there. velocity: of the
-  /// fluid, m/s; density: of a gas, kg/m3, origin null: that of the fluid at rest. `cut`: cells in bodies
-  /// take no grains.
-  void map(std::span<const Body> grains, const std::vector<char>& here,
-           const std::array<ConstFieldView, 3>& velocity, ConstFieldView density, const CutCells& cut,
-           double dt, FluidFraction& f);
+  /// Fills what stands above "results" for a step of dt (s). `here`: which grains are there. `cut`: cells in
+  /// bodies take no grains.
+  void map(std::span<const Body> grains, const std::vector<char>& here, const FluidSeen& fluid,
+           const CutCells& cut, double dt, FluidFraction& f);
   /// Force on every grain over the flow step: drag, gradient of the pressure, viscous stress, buoyancy. Fills
   /// f.work where the setup asks for it.
   void collect(std::span<const Body> grains, const std::vector<char>& here, FluidFraction& f,
@@ -69,16 +70,19 @@ class UnresolvedCoupling {
 
  private:
   void note_grains(std::span<const Body> grains);
-  /// fields: velocity, solids, density.
-  void find_drags(std::span<const Body> grains, const std::array<ConstFieldView, 5>& fields, double dt);
-  void look_around(std::span<const Body> grains, std::size_t at, const std::array<ConstFieldView, 5>& fields,
-                   drag::Batch& batch, std::size_t n) const;
+  void find_drags(std::span<const Body> grains, const FluidSeen& fluid, ConstFieldView solids, double dt);
+  /// What the drag on the grain of a place depends on, as number n of a batch. Returns the velocity of the
+  /// eddy around it, m/s.
+  Vec3 look_around(std::span<const Body> grains, std::size_t at, const FluidSeen& fluid,
+                   ConstFieldView solids, double dt, drag::Batch& batch, std::size_t n);
+  Vec3 eddy_around(std::size_t at, const FluidSeen& fluid, const Vec3& slip, double fluid_density, double dt);
   void find_work(std::span<const Body> grains, FluidFraction& f) const;
 
   const Grid& grid_;
   UnresolvedSetup setup_;
   GrainMap map_;
   std::vector<double> diameters_, volumes_, masses_;  // of the grains, m, m3, kg
+  EddyWalk eddies_;
   std::vector<GrainDrag> drags_;
   double dt_ = 0.0;  // s, of the last mapping
   GrainExtremes extremes_;

@@ -50,8 +50,12 @@ class CompressibleModel : public FlowModel {
   }
 
   double density() const override { return case_.fluid.density; }
-  std::array<ConstFieldView, 3> velocity() const override { return {view(kU), view(kV), view(kW)}; }
-  ConstFieldView densities() const override { return view(kRho); }
+  FluidSeen seen() const override {
+    FluidSeen s{.velocity = {view(kU), view(kV), view(kW)}, .density = view(kRho)};
+    if (turbulent()) s.k = view(kK), s.dissipation = view(kE);
+    s.specific = case_.flow.turbulence == TurbulenceModel::k_omega_sst;
+    return s;
+  }
   std::vector<CellField> fields() override {
     std::vector<CellField> all{
         vector_field("velocity", view(kU), view(kV), view(kW)), scalar_field("density", view(kRho)),

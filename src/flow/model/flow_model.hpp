@@ -36,8 +36,7 @@ class FlowModel {
   virtual void advance_with_grains(double time, double dt, CutCells& solids, FluidFraction& grains);
 
   virtual double density() const = 0;  ///< kg/m3, of the fluid at rest
-  virtual std::array<ConstFieldView, 3> velocity() const = 0;
-  virtual ConstFieldView densities() const { return {}; }  ///< kg/m3; origin null: density() everywhere
+  virtual FluidSeen seen() const = 0;
   /// Every field that can be written, with units in SI.
   virtual std::vector<CellField> fields() = 0;
   /// Names (with unit) and values at a point: velocity_x..z, pressure, total_pressure, k ...

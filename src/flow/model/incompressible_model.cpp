@@ -63,7 +63,13 @@ class IncompressibleModel : public FlowModel {
     note_step(dt, solids);
   }
   double density() const override { return still_.density; }
-  std::array<ConstFieldView, 3> velocity() const override { return flow_->velocity(); }
+  FluidSeen seen() const override {
+    FluidSeen s{.velocity = std::as_const(*flow_).velocity()};
+    if (const TwoEquation* t = std::as_const(*flow_).turbulence())
+      s.k = t->k().view(), s.dissipation = t->dissipation().view();
+    s.specific = still_.omega;
+    return s;
+  }
 
   std::vector<CellField> fields() override {
     const auto u = flow_->velocity();
