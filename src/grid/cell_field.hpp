@@ -1,6 +1,9 @@
 #pragma once
+#include <algorithm>
 #include <array>
+#include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include "grid/field.hpp"
@@ -18,6 +21,11 @@ struct CellField {
 inline CellField scalar_field(std::string name, ConstFieldView values, double scale = 1.0,
                               double offset = 0.0) {
   return {std::move(name), {values, {}, {}}, 1, scale, offset};
+}
+
+/// The field of that name, which is one of them.
+inline const CellField& field_named(std::span<const CellField> fields, std::string_view name) {
+  return *std::ranges::find(fields, name, &CellField::name);
 }
 
 inline CellField vector_field(std::string name, ConstFieldView x, ConstFieldView y, ConstFieldView z) {

@@ -129,7 +129,7 @@ void add_errors(const CoupledModel& m, double time, Json& result) {
   // Pressure is known up to a constant: compare after removing both means.
   const Expression f(*exact.pressure);
   const auto fields = m.flow()->fields();
-  const ConstFieldView p = fields.at(1).component[0];
+  const ConstFieldView p = field_named(fields, "pressure").component[0];
   const double rho = m.flow()->density();
   double mean = 0.0, volume = 0.0;
   const auto raw = [&](int i, int j, int k) {
@@ -154,10 +154,10 @@ void add_round_jet(const CoupledModel& m, double time, Json& result) {
     return ConstFieldView{};
   };
   const double d = c.valve.orifice_diameter, z0 = c.jet.nozzle.z();
-  if (const auto jet =
-          analyse_round_jet(m.grid(), m.flow()->seen().velocity[2], field("pressure"), field("eddy_viscosity"),
-                            c.fluid.viscosity / c.fluid.density, d, m.inflow().fastest(time), z0 + 30.0 * d,
-                            z0 + 0.8 * (m.grid().axis(2).face.back() - z0)))
+  if (const auto jet = analyse_round_jet(m.grid(), m.flow()->seen().velocity[2], field("pressure"),
+                                         field("eddy_viscosity"), c.fluid.viscosity / c.fluid.density, d,
+                                         m.inflow().fastest(time), z0 + 30.0 * d,
+                                         z0 + 0.8 * (m.grid().axis(2).face.back() - z0)))
     result["round_jet"] = {{"decay", jet->far.decay},
                            {"spreading", jet->far.spreading},
                            {"decay_times_spreading", jet->far.decay * jet->far.spreading},

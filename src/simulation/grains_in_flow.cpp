@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/parallel.hpp"
 #include "base/state_reader.hpp"
 #include "case/words.hpp"
 
@@ -68,6 +69,12 @@ void GrainsInFlow::collect(const Particles& particles, std::span<Load> loads) {
   coupling_.collect(particles.bodies().subspan(first_), here_, fraction_, loads.subspan(first_));
 }
 
+double GrainsInFlow::fastest_drag() const {
+  return double(reduce_max(fraction_.drag.cells(),
+                           [drag = fraction_.drag.view(), solids = fraction_.solids.view()](
+                               int i, int j, int k) { return drag(i, j, k) / (1 - solids(i, j, k)); }));
+}
+
 std::vector<CellField> GrainsInFlow::fields() const {
   return {scalar_field("void_fraction", fraction_.solids.view(), -1.0, 1.0),
           scalar_field("drag_coefficient", fraction_.drag.view())};
@@ -93,7 +100,10 @@ std::vector<std::string> GrainsInFlow::warnings() const {
 
 std::vector<NamedField> GrainsInFlow::state_fields() {
   std::vector<NamedField> all{{"solids", &fraction_.solids}};
-  if (case_.flow.solver == FlowSolver::compressible_piso) all.push_back({"work", &fraction_.work});
+  if (case_.flow.solver == FlowSolver::compressible_piso) {
+    all.push_back({"work", &fraction_.work});
+    all.push_back({"drag", &fraction_.drag});
+  }
   return all;
 }
 

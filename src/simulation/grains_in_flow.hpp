@@ -29,6 +29,8 @@ class GrainsInFlow {
   std::vector<CellField> fields() const;
   /// What the user should know: a drag law outside its range.
   std::vector<std::string> warnings() const;
+  /// Largest rate, 1/s, at which the drag of the last step took the velocity of the fluid in a cell.
+  double fastest_drag() const;
   double largest_reynolds() const { return largest_reynolds_; }
   double least_fraction() const { return least_fraction_; }
 

@@ -53,6 +53,59 @@ TEST(GasThroughAFraction, StaysAtRestWhereItJumps) {
   }
 }
 
+/// The velocity that a face gives is that of gas alone: between grains that fill half of the box it is twice
+/// as fast.
+TEST(GasThroughAFraction, ComesInWithTheVelocityOfGasAlone) {
+  auto t = make_tube<gas::Compressible>(0, 12, inviscid_air());
+  const GasState outside{kRhoOfAir, {1, 0, 0}, kPressure}, inside{kRhoOfAir, {2, 0, 0}, kPressure};
+  t->all_boundaries(BoundaryType::slip);
+  t->boundary(0, BoundaryType::velocity, outside);
+  t->boundary(1, BoundaryType::pressure_outlet, outside);
+  t->fill([&](const Vec3&) { return inside; });
+  t->solver.expect_grains(kRhoOfAir);
+  FluidFraction f(t->grid);
+  f.solids.fill(Real(0.5));
+  f.solids_before = f.solids;
+  CutCells none;
+  for (int n = 0; n < 100; ++n) t->solver.advance(5e-4, none, f);
+  for (int i = 0; i < 12; ++i) EXPECT_NEAR(t->solver.at(i, 0, 0).velocity.x(), 2.0, 1e-5);
+}
+
+/// Through an even bed whose drag stops gas within a step the flow is steady, and its pressure falls as drag
+/// asks: e grad p = -D u.
+TEST(GasThroughAFraction, IsSteadyInAnEvenBed) {
+  constexpr int kCells = 12;
+  constexpr double kLength = 0.036, kPart = 0.47, kDrag = 2400.0;  // 1/s
+  FilledTube t(even_axis(0, kLength, kCells), even_axis(0, 1, 1), even_axis(0, 1, 1), false, inviscid_air());
+  const GasState outside{kRhoOfAir, {1, 0, 0}, kPressure};
+  t.all_boundaries(BoundaryType::slip);
+  t.boundary(0, BoundaryType::velocity, outside);
+  t.boundary(1, BoundaryType::pressure_outlet, outside);
+  t.fill([&](const Vec3&) { return GasState{kRhoOfAir, {1 / kPart, 0, 0}, kPressure}; });
+  t.solver.expect_grains(kRhoOfAir);
+  FluidFraction f(t.grid);
+  f.solids.fill(Real(1 - kPart));
+  f.solids_before = f.solids;
+  f.drag.fill(Real(kDrag));
+  CutCells none;
+  double before = 0, rattle = 0;
+  for (int n = 0; n < 400; ++n) {
+    t.solver.advance(5e-4, none, f);
+    const double now = t.solver.at(6, 0, 0).pressure;
+    if (n > 300) rattle = std::max(rattle, std::abs(now - before));
+    before = now;
+  }
+  const double slope = kRhoOfAir * kDrag / kPart / kPart;  // Pa/m
+  EXPECT_LT(rattle, 0.01 * slope * kLength / kCells);
+  for (int i = 2; i < 9; ++i) {
+    EXPECT_NEAR(t.solver.at(i, 0, 0).velocity.x() * kPart, 1.0, 0.01) << i;
+    EXPECT_NEAR(
+        (t.solver.at(i - 1, 0, 0).pressure - t.solver.at(i, 0, 0).pressure) / (slope * kLength / kCells), 1.0,
+        0.02)
+        << i;
+  }
+}
+
 /// Mach number of an isentropic subsonic flow where the area is `area` of that at Mach 0.2.
 double mach_in_nozzle(double area) {
   const auto flow = [](double m) { return m * std::pow(1 + 0.5 * (kRatio - 1) * m * m, -3.0); };

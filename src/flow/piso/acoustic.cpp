@@ -1,6 +1,8 @@
 #include "flow/piso/acoustic.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "base/parallel.hpp"
 #include "flow/cut_geometry.hpp"
@@ -14,6 +16,9 @@ namespace {
 /// The residual left over, of the first one without any change of pressure. It is not lost: mass, momentum
 /// and energy are kept whatever it is, and the next step finds it in the pressure.
 constexpr double kTolerance = 1e-3;
+constexpr double kToleranceWithGrains = 1e-5;
+/// What is below the last digit of the flow through a cell is no residual: a steady flow would iterate on it.
+constexpr double kNoise = 4.0 * std::numeric_limits<Real>::epsilon();
 constexpr int kMostIterations = 200;
 
 template <class T>
@@ -316,6 +321,21 @@ void Acoustic::conjugate_gradients(const Boundaries& boundaries, const CutCells&
   boundaries.extend(change_);
 }
 
+/// Sum of the square of what flows through the lower faces of a cell over the diagonal, as of the residual.
+double Acoustic::square_of_flow() const {
+  const Axes<bool> active{grid_.active(0), grid_.active(1), grid_.active(2)};
+  const Metrics m[3]{metrics_[0], metrics_[1], metrics_[2]};
+  const Axes<ConstFieldView> q{velocity_[0].view(), velocity_[1].view(), velocity_[2].view()};
+  return reduce_sum(
+      grid_.range(), [ =, d = diagonal_.view() ](int i, int j, int k) __attribute__((always_inline)) {
+        Real flow = 0;
+        if (active[0]) flow += face_area<0>(m, i, j, k) * std::abs(q[0](i, j, k));
+        if (active[1]) flow += face_area<1>(m, i, j, k) * std::abs(q[1](i, j, k));
+        if (active[2]) flow += face_area<2>(m, i, j, k) * std::abs(q[2](i, j, k));
+        return flow * flow / d(i, j, k);
+      });
+}
+
 void Acoustic::correct_faces() {
   const ConstFieldView x = change_.view();
   const auto sweep = [&](auto direction) {
@@ -359,10 +379,12 @@ void Acoustic::solve(const Boundaries& boundaries, const Block& middle, double d
       reduce_sum(grid_.range(), [r = residual_.view(), d = diagonal_.view()](int i, int j, int k) {
         return r(i, j, k) * r(i, j, k) / d(i, j, k);
       });
+  const double round_off = square_of_flow();
   for_each_boundary_cell(boundaries, [&](const BoundaryCell& b) {
     diagonal_.view().origin[b.inside] += open(b) * admittance_[b.face][b.cell];
   });
-  conjugate_gradients(boundaries, cut, kTolerance * kTolerance * first);
+  const double tolerance = grains ? kToleranceWithGrains : kTolerance;
+  conjugate_gradients(boundaries, cut, std::max(tolerance * tolerance * first, kNoise * kNoise * round_off));
   reopen_faces(cut);
   if (grains) grains->widen_faces(velocity_, conductance_);
   correct_faces();

@@ -59,6 +59,7 @@ class Acoustic {
   void measure_cells(const Block& middle, Real dt);
   void share(const CutCells& cut, FieldView f) const;
   void conjugate_gradients(const Boundaries& boundaries, const CutCells& cut, double enough);
+  double square_of_flow() const;
   void correct_faces();
   template <class Visit>
   void for_each_boundary_cell(const Boundaries& boundaries, const Visit& visit) const;

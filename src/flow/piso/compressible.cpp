@@ -175,6 +175,11 @@ void Compressible::smooth_increments(double dt, bool across, const CutCells& cut
   }
 }
 
+void Compressible::fill_ghosts(Block& w) const {
+  boundaries_.fill(w);
+  if (takes_room()) grains_->fill_inlets(boundaries_, w);
+}
+
 template <class P>
 void Compressible::step(double dt, CutCells& cut) {
   for_each_cell(grid_.range(), PredictorKernel<P>{view_block<const Real>(w_), view_block<Real>(middle_),
@@ -182,7 +187,7 @@ void Compressible::step(double dt, CutCells& cut) {
                                                   diffusion_, axes(), Real(dt)});
   cut_gas_.extend(cut, middle_, eddies());
   cut_gas_.extend_pressure(cut, middle_[kP]);
-  boundaries_.fill(middle_);
+  fill_ghosts(middle_);
   GasGrains* const grains = takes_room() ? &*grains_ : nullptr;
   acoustic_.solve(boundaries_, middle_, dt, cut, grains);
   cut_gas_.keep(cut, middle_);
@@ -190,11 +195,11 @@ void Compressible::step(double dt, CutCells& cut) {
                                                  acoustic_.change().view().origin, gas_, axes(), Real(dt)});
   std::swap(middle_[kP], next_[kP]);
   if (grains) grains->drag_middle(middle_);
-  if (!cut.empty()) boundaries_.fill(middle_);  // of bodies across the faces of the box
+  if (!cut.empty()) fill_ghosts(middle_);  // of bodies across the faces of the box
   cut_gas_.push(cut, middle_, Real(0.5 * dt));
   cut_gas_.extend(cut, middle_, eddies());
   cut_gas_.extend_pressure(cut, middle_[kP]);
-  boundaries_.fill(middle_);
+  fill_ghosts(middle_);
   acoustic_.let_waves_out(boundaries_, middle_);
   find_fluxes<P>();
   if (options_.keep_ledger) add_to_ledger(dt, cut);
@@ -249,7 +254,7 @@ void Compressible::advance(double dt, CutCells& cut) {
   if (turbulent())  // next_ holds what was there before the sources
     cut_gas_.advance_turbulence(cut, options_.turbulence == TurbulenceModel::k_omega_sst, next_, w_, u_,
                                 eddy_viscosity_, f1_, Real(dt));
-  boundaries_.fill(w_);
+  fill_ghosts(w_);
   with_physics([&](auto physics) { step<decltype(physics)>(dt, cut); });
   growth_ = -1.0;
   const CutGas::Given given = cut_gas_.given(cut, start_, dt);

@@ -40,6 +40,7 @@ class Compressible : public GasFlow {
  private:
   template <class P>
   void step(double dt, CutCells& cut);
+  void fill_ghosts(Block& w) const;
   /// What crosses the faces in a step, from its middle.
   template <class P>
   void find_fluxes();

@@ -79,16 +79,34 @@ void GasGrains::begin(FluidFraction& f, const Boundaries& boundaries, double dt)
     for_each_cell(faces_along(grid_, d),
                   [=](int i, int j, int k) { open(i, j, k) = mean(middle.row(j, k) + i, i, j, k); });
   });
-  // What comes in has been gas alone.
+  acts_ = &f;
+}
+
+void GasGrains::fill_inlets(const Boundaries& boundaries, Block& w) const {
+  const auto v = view_block<Real>(w);
   for (int face = 0; face < 6; ++face) {
-    if (!grid_.active(face / 2) || boundaries.is_periodic(face / 2)) continue;
+    const int d = face / 2;
+    if (!grid_.active(d) || boundaries.is_periodic(d)) continue;
+    const Metrics& m = grid_.metrics(d);
+    const std::ptrdiff_t s = stride(w[kP].view(), d), inward = face % 2 ? -s : s;
     for_each_face_cell(grid_, face, [&](std::size_t cell, const int(&at)[3]) {
       const BoundaryType type = boundaries.at(face, cell).type;
-      if (type == BoundaryType::velocity || type == BoundaryType::jet || type == BoundaryType::total_pressure)
-        open_[static_cast<std::size_t>(face / 2)](at[0], at[1], at[2]) = 1;
+      if (type != BoundaryType::velocity && type != BoundaryType::jet) return;
+      int c[3] = {at[0], at[1], at[2]};
+      c[d] -= face % 2;
+      const std::size_t n = static_cast<std::size_t>(d);
+      const std::ptrdiff_t o = v.offset(c[0], c[1], c[2]);
+      const Real part = middle_part_(c[0], c[1], c[2]), h = m.width[c[d]];
+      Real* u = v.origin[kU + n] + o;
+      u[-inward] /= part;
+      u[-2 * inward] /= part;
+      const Real slope = Real(density_) / part *
+                         (acts_->dragging[n](c[0], c[1], c[2]) - acts_->drag(c[0], c[1], c[2]) * u[-inward]);
+      const Real outward = face % 2 ? h : -h;
+      v.at(kP, o - inward) += outward * slope;
+      v.at(kP, o - 2 * inward) += 2 * outward * slope;
     });
   }
-  acts_ = &f;
 }
 
 void GasGrains::drag_faces(const Block& middle, std::array<Field, 3>& velocity,

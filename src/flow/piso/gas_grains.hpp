@@ -28,6 +28,10 @@ class GasGrains {
   /// Cells and faces of a step of dt (s) in which grains take room.
   void begin(FluidFraction& f, const Boundaries& boundaries, double dt);
 
+  /// Ghosts of faces through which a velocity is given, which is that of gas alone: in between grains it is
+  /// faster, and its pressure falls by their drag.
+  void fill_inlets(const Boundaries& boundaries, Block& w) const;
+
   /// Velocities of the faces of the middle of the step, and what a change of pressure adds to them, with
   /// drag.
   void drag_faces(const Block& middle, std::array<Field, 3>& velocity,
