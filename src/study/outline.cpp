@@ -291,6 +291,19 @@ double beyond_pieces(const Raster& r, std::span<const double> values) {
   return (positive_area(r, values) - positive_area(half, every_second)) / 3.0;
 }
 
+/// Within which the margins of half of the coarse runs lie, and of so many that pairs can be made, m. What
+/// fine runs correct farther from the boundary moves none of it, and far from the jet, where no air acts,
+/// they correct nothing at all, which says nothing of the boundary.
+double margin_of_nearer_half(std::span<const MapRun> runs) {
+  std::vector<double> margins;
+  for (const MapRun& run : runs)
+    if (run.fidelity == Fidelity::coarse) margins.push_back(std::abs(run.margin));
+  if (margins.empty()) return 0.0;
+  std::ranges::sort(margins);
+  const std::size_t half = std::max(margins.size() / 2, std::size_t{kPairs});
+  return margins[std::min(half, margins.size()) - 1];
+}
+
 std::vector<Eigen::Index> unsure_nodes(const ConditionedProcess::Field& f) {
   std::vector<Eigen::Index> nodes;
   for (Eigen::Index n = 0; n < f.mean.size(); ++n)
@@ -445,12 +458,10 @@ std::vector<Proposal> OutlineFinder::ask(int count) {
         allowed[static_cast<std::size_t>(n)] = more_fine && alone;
         if (!room_for_coarse) allowed[static_cast<std::size_t>(n + raster.nodes())] = false;
       }
-      const auto pair = [&](const auto& run) {
-        if (more_fine && run.fidelity == Fidelity::coarse)
+      const double near = margin_of_nearer_half(runs_);
+      for (const MapRun& run : runs_)
+        if (more_fine && run.fidelity == Fidelity::coarse && std::abs(run.margin) <= near)
           allowed[static_cast<std::size_t>(option_of(run.at, Fidelity::fine))] = true;
-      };
-      std::for_each(runs_.begin(), runs_.end(), pair);
-      std::for_each(pending_.begin(), pending_.end(), pair);
     }
     const auto once = [&](const auto& run) {  // the same run gives the same margin, however noisy its place
       if (run.fidelity == Fidelity::fine || two)

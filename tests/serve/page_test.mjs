@@ -218,7 +218,7 @@ try {
   const stop = again.getByRole("button", { name: "Stop slow.run" });
   const tabTo = async (target) => {
     const there = () => target.evaluate((b) => b === document.activeElement);
-    for (let n = 0; n < 80 && !(await there()); ++n) await again.keyboard.press("Tab");
+    for (let n = 0; n < 240 && !(await there()); ++n) await again.keyboard.press("Tab");
     assert.ok(await there(), "the keyboard reaches it");
   };
   await tabTo(stop);
