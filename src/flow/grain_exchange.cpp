@@ -52,8 +52,8 @@ TakenByGrains taken_by_grains(const Grid& grid, const FluidFraction& f, const Ve
                      : sum_taken<true>(grid, f, acceleration, part);
 }
 
-void find_push(const Grid& grid, ConstFieldView p, const std::array<ConstFieldView, 3>& u,
-               ConstFieldView eddy, double viscosity, double scale, FluidFraction& f) {
+void find_undisplaced(const Grid& grid, ConstFieldView p, const std::array<ConstFieldView, 3>& u,
+                      ConstFieldView eddy, double viscosity, double scale, FluidFraction& f) {
   const Real unit = static_cast<Real>(scale);
   for_each_friction_row(grid, u, eddy, viscosity, [&](int j, int k, std::size_t c, const auto& friction) {
     for_each_lane(
@@ -70,6 +70,9 @@ void find_push(const Grid& grid, ConstFieldView p, const std::array<ConstFieldVi
       to(i, j, k) -= unit * cell_gradient(p.row(j, k) + i, s, metrics, d == 0 ? i : d == 1 ? j : k);
     });
   }
+  for (std::size_t c = 0; !f.acts && c < 3; ++c)
+    for_each_cell(grid.range(),
+                  [to = f.seen[c].view(), from = u[c]](int i, int j, int k) { to(i, j, k) = from(i, j, k); });
 }
 
 }  // namespace ejecta

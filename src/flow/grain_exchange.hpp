@@ -50,10 +50,11 @@ void for_each_friction_row(const Grid& grid, const std::array<ConstFieldView, 3>
   eddy.origin ? go(std::true_type{}) : go(std::false_type{});
 }
 
-/// f.push of a flow in which grains take no room: -grad p + div tau, times `scale`. p and u with ghosts; p,
-/// viscosities and scale in any units that make m/s2 together.
-void find_push(const Grid& grid, ConstFieldView p, const std::array<ConstFieldView, 3>& u,
-               ConstFieldView eddy, double viscosity, double scale, FluidFraction& f);
+/// What grains see of a flow in which they take no room: f.push, -grad p + div tau times `scale`, and f.seen
+/// where they do not act on it. p and u with ghosts; p, viscosities and scale in any units that make m/s2
+/// together.
+void find_undisplaced(const Grid& grid, ConstFieldView p, const std::array<ConstFieldView, 3>& u,
+                      ConstFieldView eddy, double viscosity, double scale, FluidFraction& f);
 
 /// What the grains took from the fluid in a step, from its fields, not from the grains.
 struct TakenByGrains {

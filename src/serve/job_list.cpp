@@ -224,7 +224,8 @@ void JobList::stop(const std::string& name) {
   }
   if (kind != "run") return;
   const Json& progress = files_.read(directory / "progress.json");  // started at a terminal
-  const pid_t process = progress.is_object() ? progress.value("process", 0) : 0;
+  if (!progress.is_object()) return;                                // it has not begun
+  const pid_t process = progress.value("process", 0);
   if (process <= 0)
     throw InputError(fmt::format("{} runs inside another program, such as a notebook: stop it there", name));
   ::kill(process, SIGTERM);

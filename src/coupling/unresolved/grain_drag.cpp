@@ -53,8 +53,9 @@ EJECTA_KERNEL Response response(Surroundings s, double seen, double own, double 
 }  // namespace
 
 void Batch::fill_up(std::size_t count) {
-  for (Numbers* all : {&diameter, &volume, &mass, &is_free, &fraction, &fluid_density, &density, &spread,
-                       &slip[0], &slip[1], &slip[2], &acceleration[0], &acceleration[1], &acceleration[2]})
+  for (Numbers* all :
+       {&diameter, &volume, &mass, &is_free, &fraction, &fluid_density, &viscosity, &density, &spread,
+        &slip[0], &slip[1], &slip[2], &acceleration[0], &acceleration[1], &acceleration[2]})
     std::fill(*all + count, *all + kSize, (*all)[count - 1]);
 }
 
@@ -63,8 +64,7 @@ void find_drag(const Step& step, Batch& b) {
   constexpr double kShort = 0.01;  // relaxation times
   for_each_in_lanes(
       0, Batch::kSize, [&](int n) __attribute__((always_inline)) {
-        const Surroundings s{b.diameter[n], 0, b.fraction[n], b.fluid_density[n],
-                             step.viscosity * (step.density / b.fluid_density[n])};
+        const Surroundings s{b.diameter[n], 0, b.fraction[n], b.fluid_density[n], b.viscosity[n]};
         const double own = b.volume[n] * b.density[n];
         const auto respond = [&](double seen) __attribute__((always_inline)) {
           return response<law>(s, seen, own, b.volume[n], b.spread[n], step.wakes);

@@ -8,9 +8,8 @@ namespace ejecta::drag {
 
 /// What is the same for all grains in a step.
 struct Step {
-  double density = 0, viscosity = 0;  ///< of the fluid at rest, kg/m3, m2/s
-  double dt = 0;                      ///< s
-  double wakes = 0;                   ///< 1: grains see what they move of the fluid themselves
+  double dt = 0;     ///< s
+  double wakes = 0;  ///< 1: grains see what they move of the fluid themselves
 };
 
 /// Grains whose drag is found together: a whole number of registers.
@@ -19,7 +18,8 @@ struct Batch {
   using Numbers = double[kSize];
   Numbers diameter, volume, mass;    ///< m, m3, kg
   Numbers is_free;                   ///< 1; 0: its velocity is given
-  Numbers fraction, fluid_density;   ///< of the fluid around it; kg/m3
+  Numbers fraction;                  ///< of the fluid around it
+  Numbers fluid_density, viscosity;  ///< kg/m3, m2/s, kinematic
   Numbers density, spread;           ///< of what it leaves in cells, 1/m3, m (own_wake.hpp)
   Numbers slip[3], acceleration[3];  ///< seen less own velocity, m/s; by all but drag, m/s2
   Numbers coefficient, reynolds;     ///< results: beta of the step, kg/s; at its beginning

@@ -47,7 +47,7 @@ void UnresolvedCoupling::find_drags(std::span<const Body> grains, const FluidSee
   constexpr std::size_t kSize = drag::Batch::kSize;
   static_assert(kGrainBlock % kSize == 0);
   const bool wakes = setup_.acts && grid_.active(0) && grid_.active(1) && grid_.active(2);
-  const drag::Step step{setup_.fluid_density, setup_.viscosity, dt, wakes ? 1.0 : 0.0};
+  const drag::Step step{dt, wakes ? 1.0 : 0.0};
   drags_.resize(map_.size());
   std::vector<GrainExtremes> met(block_count_of(map_.size()));
   for_each_grain_block(map_.size(), [&](std::size_t b, std::size_t begin, std::size_t end) {
@@ -89,10 +89,13 @@ Vec3 UnresolvedCoupling::look_around(std::span<const Body> grains, std::size_t a
   batch.fluid_density[n] = fluid.density.origin && p.inside > 0
                                ? inverse * map_.gather<1>(at, {fluid.density})[0]
                                : setup_.fluid_density;
+  batch.viscosity[n] = setup_.viscosity * (setup_.fluid_density / batch.fluid_density[n]);
   const Vec3 slip = inverse * Vec3(seen[0], seen[1], seen[2]) - grain.velocity;
-  const Vec3 eddy = setup_.disperses && p.inside > 0
-                        ? eddy_around(at, fluid, slip, batch.fluid_density[n], dt)
-                        : Vec3(0, 0, 0);
+  const Vec3 eddy =
+      setup_.disperses && p.inside > 0
+          ? eddy_around(at, fluid,
+                        {diameters_[g], slip.norm(), 1.0, batch.fluid_density[n], batch.viscosity[n]}, dt)
+          : Vec3(0, 0, 0);
   batch.diameter[n] = diameters_[g];
   batch.volume[n] = volumes_[g];
   batch.mass[n] = masses_[g];
@@ -109,15 +112,13 @@ Vec3 UnresolvedCoupling::look_around(std::span<const Body> grains, std::size_t a
 }
 
 /// Of a grain that looks at the turbulence of its cells.
-Vec3 UnresolvedCoupling::eddy_around(std::size_t at, const FluidSeen& fluid, const Vec3& slip,
-                                     double fluid_density, double dt) {
+Vec3 UnresolvedCoupling::eddy_around(std::size_t at, const FluidSeen& fluid, const drag::Surroundings& alone,
+                                     double dt) {
   const double inverse = 1 / map_[at].inside;
   const std::size_t g = map_.grain(at);
   const auto turbulence = map_.gather<2>(at, {fluid.k, fluid.dissipation});
-  EddyAround around{.k = inverse * turbulence[0], .epsilon = inverse * turbulence[1], .slip = slip.norm()};
+  EddyAround around{.k = inverse * turbulence[0], .epsilon = inverse * turbulence[1], .slip = alone.slip};
   if (fluid.specific) around.epsilon *= k_epsilon::kCmu * around.k;
-  const drag::Surroundings alone{diameters_[g], around.slip, 1.0, fluid_density,
-                                 setup_.viscosity * (setup_.fluid_density / fluid_density)};
   around.relaxation = masses_[g] / drag::schiller_naumann(alone);
   return eddies_.velocity(g, around, dt);
 }

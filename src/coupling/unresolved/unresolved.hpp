@@ -75,7 +75,8 @@ class UnresolvedCoupling {
   /// eddy around it, m/s.
   Vec3 look_around(std::span<const Body> grains, std::size_t at, const FluidSeen& fluid,
                    ConstFieldView solids, double dt, drag::Batch& batch, std::size_t n);
-  Vec3 eddy_around(std::size_t at, const FluidSeen& fluid, const Vec3& slip, double fluid_density, double dt);
+  /// `alone`: the grain in the mean flow.
+  Vec3 eddy_around(std::size_t at, const FluidSeen& fluid, const drag::Surroundings& alone, double dt);
   void find_work(std::span<const Body> grains, FluidFraction& f) const;
 
   const Grid& grid_;

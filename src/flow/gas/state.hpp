@@ -66,6 +66,8 @@ struct GasConstants {
         inv_gamma_minus_1(Real(1.0 / (g - 1.0))),
         reference_enthalpy(Real(g / (g - 1.0) * reference)) {}
 
+  /// K of dp = -K div u dt, Pa; p is the difference to the reference.
+  EJECTA_KERNEL Real stiffness(Real p) const { return gamma * reference_pressure + (gamma - 1) * p; }
   EJECTA_KERNEL Real sound_speed_squared(Real rho, Real p) const {
     return gamma * (p + reference_pressure) / rho;
   }

@@ -16,6 +16,7 @@ namespace {
 /// The residual left over, of the first one without any change of pressure. It is not lost: mass, momentum
 /// and energy are kept whatever it is, and the next step finds it in the pressure.
 constexpr double kTolerance = 1e-3;
+/// Steps that drag makes long against sound show what is left over in their pressures.
 constexpr double kToleranceWithGrains = 1e-5;
 /// What is below the last digit of the flow through a cell is no residual: a steady flow would iterate on it.
 constexpr double kNoise = 4.0 * std::numeric_limits<Real>::epsilon();
@@ -61,7 +62,7 @@ struct CellKernel {
   EJECTA_KERNEL void operator()(int i, int j, int k) const {
     const std::ptrdiff_t o = middle.offset(i, j, k);
     const Real volume = metrics[0].volume[i] * metrics[1].volume[j] * metrics[2].volume[k];
-    const Real stiffness = gas.gamma * gas.reference_pressure + (gas.gamma - 1) * middle.at(kP, o);
+    const Real stiffness = gas.stiffness(middle.at(kP, o));
     Real out = 0, sum = volume / (dt * stiffness);
     if (active[0]) {
       const Real* q = velocity[0].origin + o;
@@ -169,7 +170,7 @@ void Acoustic::leave_to_fluid(const CutCells& cut, const Block& middle, Real dt)
       residual_(c.i, c.j, c.k) = 0;
       return;
     }
-    const Real stiffness = gas_.gamma * gas_.reference_pressure + (gas_.gamma - 1) * p(c.i, c.j, c.k);
+    const Real stiffness = gas_.stiffness(p(c.i, c.j, c.k));
     Real sum = c.fluid * static_cast<Real>(grid_.volume(c.i, c.j, c.k)) / (dt * stiffness);
     for (int d = 0; d < 3; ++d) {
       if (!grid_.active(d)) continue;
@@ -379,12 +380,13 @@ void Acoustic::solve(const Boundaries& boundaries, const Block& middle, double d
       reduce_sum(grid_.range(), [r = residual_.view(), d = diagonal_.view()](int i, int j, int k) {
         return r(i, j, k) * r(i, j, k) / d(i, j, k);
       });
-  const double round_off = square_of_flow();
+  const double enough = grains ? std::max(kToleranceWithGrains * kToleranceWithGrains * first,
+                                          kNoise * kNoise * square_of_flow())
+                               : kTolerance * kTolerance * first;
   for_each_boundary_cell(boundaries, [&](const BoundaryCell& b) {
     diagonal_.view().origin[b.inside] += open(b) * admittance_[b.face][b.cell];
   });
-  const double tolerance = grains ? kToleranceWithGrains : kTolerance;
-  conjugate_gradients(boundaries, cut, std::max(tolerance * tolerance * first, kNoise * kNoise * round_off));
+  conjugate_gradients(boundaries, cut, enough);
   reopen_faces(cut);
   if (grains) grains->widen_faces(velocity_, conductance_);
   correct_faces();

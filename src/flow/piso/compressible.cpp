@@ -278,19 +278,16 @@ void Compressible::advance(double dt, CutCells& cut, FluidFraction& f) {
   if (takes_room) grains_->begin(f, boundaries_, dt);
   advance(dt, cut);
   fraction_ = nullptr;
-  if (!takes_room) find_push_of_grains(f);
+  if (!takes_room) find_results(f);
   if (f.acts && options_.keep_ledger) book_grains(f, dt);
 }
 
 /// What grains see of a gas in which they take no room.
-void Compressible::find_push_of_grains(FluidFraction& f) {
+void Compressible::find_results(FluidFraction& f) {
   boundaries_.fill(w_);
   const std::array<ConstFieldView, 3> u{w_[kU].view(), w_[kV].view(), w_[kW].view()};
-  find_push(grid_, w_[kP].view(), u, turbulent() ? eddy_viscosity_.view() : ConstFieldView{},
-            options_.viscosity, 1.0 / grains_->density(), f);
-  for (std::size_t c = 0; !f.acts && c < 3; ++c)
-    for_each_cell(grid_.range(),
-                  [to = f.seen[c].view(), from = u[c]](int i, int j, int k) { to(i, j, k) = from(i, j, k); });
+  find_undisplaced(grid_, w_[kP].view(), u, turbulent() ? eddy_viscosity_.view() : ConstFieldView{},
+                   options_.viscosity, 1.0 / grains_->density(), f);
 }
 
 void Compressible::book_grains(const FluidFraction& f, double dt) {

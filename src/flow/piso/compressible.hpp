@@ -44,7 +44,7 @@ class Compressible : public GasFlow {
   /// What crosses the faces in a step, from its middle.
   template <class P>
   void find_fluxes();
-  void find_push_of_grains(FluidFraction& f);
+  void find_results(FluidFraction& f);
   void book_grains(const FluidFraction& f, double dt);
   void measure_growth();
   void smooth_increments(double dt, bool across, const CutCells& cut);

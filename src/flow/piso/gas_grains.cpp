@@ -62,8 +62,7 @@ GasGrains::GasGrains(const Grid& grid, const GasConstants& gas, double density)
 
 void GasGrains::begin(FluidFraction& f, const Boundaries& boundaries, double dt) {
   dt_ = dt;
-  for (Field* field : {&f.solids_before, &f.solids, &f.drag, &f.dragging[0], &f.dragging[1], &f.dragging[2]})
-    boundaries.extend(*field);
+  for (Field* field : {&f.drag, &f.dragging[0], &f.dragging[1], &f.dragging[2]}) boundaries.extend(*field);
   for_each_cell(grid_.range(), [part = part_.view(), middle = middle_part_.view(), growth = growth_.view(),
                                 before = f.solids_before.view(), now = f.solids.view(),
                                 inv_dt = Real(1 / dt)](int i, int j, int k) {
@@ -129,26 +128,25 @@ void GasGrains::drag_faces(const Block& middle, std::array<Field, 3>& velocity,
   });
 }
 
-void GasGrains::narrow_faces(std::array<Field, 3>& velocity, std::array<Field, 3>& conductance) const {
+template <class Change>
+void GasGrains::change_faces(std::array<Field, 3>& velocity, std::array<Field, 3>& conductance,
+                             const Change& change) const {
   for_each_axis(grid_, [&](auto direction) {
     constexpr int d = decltype(direction)::value;
-    for_each_cell(faces_along(grid_, d), [q = velocity[d].view(), c = conductance[d].view(),
+    for_each_cell(faces_along(grid_, d), [=, q = velocity[d].view(), c = conductance[d].view(),
                                           open = open_[d].view()](int i, int j, int k) {
-      q(i, j, k) *= open(i, j, k);
-      c(i, j, k) *= open(i, j, k);
+      q(i, j, k) = change(q(i, j, k), open(i, j, k));
+      c(i, j, k) = change(c(i, j, k), open(i, j, k));
     });
   });
 }
 
+void GasGrains::narrow_faces(std::array<Field, 3>& velocity, std::array<Field, 3>& conductance) const {
+  change_faces(velocity, conductance, [](Real value, Real open) { return value * open; });
+}
+
 void GasGrains::widen_faces(std::array<Field, 3>& velocity, std::array<Field, 3>& conductance) const {
-  for_each_axis(grid_, [&](auto direction) {
-    constexpr int d = decltype(direction)::value;
-    for_each_cell(faces_along(grid_, d), [q = velocity[d].view(), c = conductance[d].view(),
-                                          open = open_[d].view()](int i, int j, int k) {
-      q(i, j, k) /= open(i, j, k);
-      c(i, j, k) /= open(i, j, k);
-    });
-  });
+  change_faces(velocity, conductance, [](Real value, Real open) { return value / open; });
 }
 
 void GasGrains::leave_to_gas(const Block& middle, Field& residual, Field& diagonal) const {
@@ -157,9 +155,8 @@ void GasGrains::leave_to_gas(const Block& middle, Field& residual, Field& diagon
                                 part = middle_part_.view(), growth = growth_.view(), gas = gas_,
                                 dt = Real(dt_)](int i, int j, int k) {
     const Real volume = x.volume[i] * y.volume[j] * z.volume[k];
-    const Real stiffness = gas.gamma * gas.reference_pressure + (gas.gamma - 1) * p(i, j, k);
     rhs(i, j, k) -= volume * growth(i, j, k);
-    diagonal(i, j, k) -= (1 - part(i, j, k)) * volume / (dt * stiffness);
+    diagonal(i, j, k) -= (1 - part(i, j, k)) * volume / (dt * gas.stiffness(p(i, j, k)));
   });
 }
 

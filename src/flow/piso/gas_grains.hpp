@@ -71,6 +71,11 @@ class GasGrains {
   double energy_taken(const FluidFraction& f, const Block& middle, bool room, ConstFieldView part) const;
 
  private:
+  /// Both become change(value, open part of the face).
+  template <class Change>
+  void change_faces(std::array<Field, 3>& velocity, std::array<Field, 3>& conductance,
+                    const Change& change) const;
+
   const Grid& grid_;
   GasConstants gas_;
   double density_;

@@ -161,12 +161,8 @@ void Incompressible::drag_cells(double h) {
 void Incompressible::find_results(FluidFraction& f) {
   boundaries_.fill_pressure(p_.view(), views(q_), true);
   boundaries_.fill_velocity(views(u_), views(q_));
-  find_push(grid_, p_.view(), std::as_const(*this).views(u_),
-            turbulence_ ? turbulence_->eddy_viscosity() : ConstFieldView{}, setup_.viscosity, 1.0, f);
-  for (std::size_t c = 0; !f.acts && c < 3; ++c)
-    for_each_cell(grid_.range(), [to = f.seen[c].view(), from = u_[c].view()](int i, int j, int k) {
-      to(i, j, k) = from(i, j, k);
-    });
+  find_undisplaced(grid_, p_.view(), std::as_const(*this).views(u_),
+                   turbulence_ ? turbulence_->eddy_viscosity() : ConstFieldView{}, setup_.viscosity, 1.0, f);
 }
 
 /// Momentum and mass of the step. What drags the fluid is counted from its fields, not from the grains.
