@@ -1,32 +1,30 @@
-# Fuzzers need clang's libFuzzer, whatever the compiler of the program. ejecta_fuzz(NAME SOURCES... LIBS...) builds
-# fuzz/NAME_fuzz.cpp with the sources (relative to src/) under address and undefined-behaviour sanitizers, and adds
-# a short run from fuzz/NAME_corpus as a test. A long run:
-#   build/release/fuzz/NAME_fuzz -max_total_time=600 /tmp/corpus fuzz/NAME_corpus
-find_program(FUZZ_COMPILER NAMES clang++-14 clang++-15 clang++-16 clang++)
-
+# ejecta_fuzz(NAME LIBRARIES...): fuzz/NAME_fuzz.cpp with clang's libFuzzer and the libraries, in a build under sanitizers
+# (preset `sanitize`, which takes clang where it is installed), and a short run from fuzz/NAME_corpus as a test. A long run:
+#   build/sanitize/fuzz/NAME_fuzz -max_total_time=600 /tmp/corpus fuzz/NAME_corpus
 function(ejecta_fuzz name)
-  cmake_parse_arguments(FUZZ "" "" "SOURCES;LIBS;INCLUDES" ${ARGN})
-  if(NOT FUZZ_COMPILER)
-    add_test(NAME fuzz.${name} COMMAND sh -c "echo skipped: fuzzing needs clang; exit 77")
-    set_tests_properties(fuzz.${name} PROPERTIES SKIP_RETURN_CODE 77 LABELS fast)
+  if(NOT EJECTA_SANITIZE)
     return()
   endif()
-  set(binary ${CMAKE_BINARY_DIR}/fuzz/${name}_fuzz)
-  list(TRANSFORM FUZZ_SOURCES PREPEND ${PROJECT_SOURCE_DIR}/src/)
-  list(TRANSFORM FUZZ_INCLUDES PREPEND -isystem)
+  if(NOT CMAKE_CXX_COMPILER_ID MATCHES Clang)
+    add_custom_target(fuzz_${name})  # nothing to build
+    ejecta_no_fuzz(${name})
+    return()
+  endif()
+  add_executable(fuzz_${name} ${PROJECT_SOURCE_DIR}/fuzz/${name}_fuzz.cpp)
+  target_link_libraries(fuzz_${name} PRIVATE ${ARGN})
+  target_link_options(fuzz_${name} PRIVATE -fsanitize=fuzzer)
+  set_target_properties(fuzz_${name} PROPERTIES OUTPUT_NAME ${name}_fuzz RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/fuzz)
+  ejecta_fuzz_test(${name} $<TARGET_FILE:fuzz_${name}>)
+endfunction()
+
+function(ejecta_fuzz_test name binary)
   file(MAKE_DIRECTORY ${CMAKE_BINARY_DIR}/fuzz/${name}_new)
-  # One translation unit, so that headers are read once.
-  set(all ${CMAKE_BINARY_DIR}/fuzz/${name}_fuzz_all.cpp)
-  list(TRANSFORM FUZZ_SOURCES REPLACE "(.+)" "#include \"\\1\"\n" OUTPUT_VARIABLE includes)
-  string(JOIN "" includes ${includes} "#include \"${PROJECT_SOURCE_DIR}/fuzz/${name}_fuzz.cpp\"\n")
-  file(CONFIGURE OUTPUT ${all} CONTENT "${includes}" @ONLY)
-  add_custom_command(OUTPUT ${binary} DEPENDS ${all} DEPFILE ${binary}.d
-    COMMAND ${FUZZ_COMPILER} -std=c++20 -O1 -g1 -fsanitize=fuzzer,address,undefined -fno-sanitize-recover=all
-            -I${PROJECT_SOURCE_DIR}/src ${FUZZ_INCLUDES} -MD -MF ${binary}.d -MT ${binary} ${all} -o ${binary}
-            ${FUZZ_LIBS}
-    COMMENT "Building the fuzzer of ${name}")
-  add_custom_target(fuzz_${name} ALL DEPENDS ${binary})
   add_test(NAME fuzz.${name} COMMAND ${binary} -runs=50000 -max_total_time=10 -seed=1 -print_final_stats=1
            ${CMAKE_BINARY_DIR}/fuzz/${name}_new ${PROJECT_SOURCE_DIR}/fuzz/${name}_corpus)
   set_tests_properties(fuzz.${name} PROPERTIES LABELS fast)
+endfunction()
+
+function(ejecta_no_fuzz name)
+  add_test(NAME fuzz.${name} COMMAND sh -c "echo skipped: fuzzing needs clang; exit 77")
+  set_tests_properties(fuzz.${name} PROPERTIES SKIP_RETURN_CODE 77 LABELS fast)
 endfunction()

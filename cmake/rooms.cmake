@@ -12,8 +12,8 @@ target_compile_options(ejecta_options INTERFACE -march=${EJECTA_ARCH} -mprefer-v
 target_compile_definitions(ejecta_options INTERFACE EIGEN_MAX_STATIC_ALIGN_BYTES=16)
 # No -ffast-math: NaN must stay detectable and sums must keep their order.
 # GCC 12 warns of uninitialised __Y inside its own AVX-512 header.
-target_compile_options(ejecta_options INTERFACE -Wall -Wextra -Wpedantic -Wno-maybe-uninitialized
-                       -fopenmp-simd -fno-math-errno
+target_compile_options(ejecta_options INTERFACE -Wall -Wextra -Wpedantic $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>
+                       $<$<CXX_COMPILER_ID:Clang>:-Wno-pass-failed> -fopenmp-simd -fno-math-errno
                        -fno-trapping-math)
 target_link_libraries(ejecta_options INTERFACE fmt::fmt Eigen3::Eigen Threads::Threads)
 target_compile_definitions(ejecta_options INTERFACE EIGEN_DONT_PARALLELIZE)
@@ -22,7 +22,7 @@ if(EJECTA_DOUBLE)
 endif()
 if(EJECTA_SANITIZE)
   target_compile_options(ejecta_options INTERFACE -fsanitize=${EJECTA_SANITIZE} -fno-sanitize-recover=all
-                         -fno-omit-frame-pointer)
+                         -fno-omit-frame-pointer $<$<CXX_COMPILER_ID:Clang>:-fsanitize=fuzzer-no-link>)
   target_link_options(ejecta_options INTERFACE -fsanitize=${EJECTA_SANITIZE})
 endif()
 

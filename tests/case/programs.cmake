@@ -1,7 +1,6 @@
 # Tests of the case room that are programs of their own.
 include(${PROJECT_SOURCE_DIR}/cmake/fuzz.cmake)
-file(GLOB case_sources RELATIVE ${PROJECT_SOURCE_DIR}/src CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/src/case/*.cpp)
-ejecta_fuzz(case SOURCES ${case_sources} base/text.cpp base/units.cpp LIBS -lfmt INCLUDES ${EIGEN3_INCLUDE_DIRS})
+ejecta_fuzz(case ejecta_case)
 
 find_package(Python3 REQUIRED COMPONENTS Interpreter)
 add_test(NAME house.includes COMMAND ${Python3_EXECUTABLE} ${PROJECT_SOURCE_DIR}/tools/check_includes.py)

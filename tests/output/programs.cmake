@@ -64,7 +64,4 @@ foreach(kind map study)
 endforeach()
 
 include(${PROJECT_SOURCE_DIR}/cmake/fuzz.cmake)
-ejecta_fuzz(checkpoint
-  SOURCES output/checkpoint.cpp output/checkpoint_seal.cpp output/output_file.cpp base/sha256.cpp
-          base/state_reader.cpp
-  INCLUDES ${HDF5_INCLUDE_DIRS} ${EIGEN3_INCLUDE_DIRS} LIBS ${HDF5_C_LIBRARIES} -lfmt)
+ejecta_fuzz(checkpoint ejecta_output)
