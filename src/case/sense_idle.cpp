@@ -189,6 +189,46 @@ void look_at_plate(const SplitterSpec& s, Idle idle) {
                 "edge = [\"250 mm\", \"60 mm\"]");
 }
 
+/// Whether a key, of those that some model takes, is one that this case's models leave aside.
+bool is_left_aside(const Case& c, std::string_view key) {
+  const auto in = [&](const Names& tables) {
+    return std::any_of(tables.begin(), tables.end(), [&](std::string_view t) { return key.starts_with(t); });
+  };
+  const auto is = [&](const Names& names) {
+    return std::find(names.begin(), names.end(), key.substr(key.rfind('.') + 1)) != names.end();
+  };
+  if (c.flow.solver == FlowSolver::none)
+    return in({"grid.", "boundary.", "initial.", "fluid.", "jet.", "valve.", "flow."}) &&
+           key != "flow.solver" && !c.sorter.enabled;
+  const bool of_a_state = in({"boundary.", "initial."});
+  if (c.flow.solver == FlowSolver::incompressible &&
+      ((of_a_state && is({"temperature", "density"})) || key == "flow.compressibility_correction"))
+    return true;
+  return c.flow.turbulence == TurbulenceModel::laminar &&
+         ((of_a_state && is({"k", "epsilon"})) || key == "flow.round_jet_correction" ||
+          key == "flow.compressibility_correction");
+}
+
+/// They may stand, for one switches between models to compare; but nobody is to believe that they act.
+void tell_what_is_left_aside(const Case& c, Findings& found) {
+  std::vector<std::string> keys;
+  for (const std::string& key : c.given)
+    if (is_left_aside(c, key)) keys.push_back(key);
+  if (keys.empty()) return;
+  constexpr std::size_t kMost = 6;
+  const std::size_t more = keys.size() > kMost ? keys.size() - kMost : 0;
+  const std::string first = keys.front();
+  keys.resize(keys.size() - more);
+  for (std::string& key : keys) key = fmt::format("`{}`", key);
+  found.warning(first,
+                fmt::format("{}{} {} nothing with flow.solver \"{}\"{}", joined(keys),
+                            more > 0 ? fmt::format(" and {} more", more) : "",
+                            keys.size() + more == 1 ? "does" : "do", word(c.flow.solver),
+                            c.flow.solver == FlowSolver::none
+                                ? ""
+                                : fmt::format(" and flow.turbulence \"{}\"", word(c.flow.turbulence))));
+}
+
 /// Nothing sets the fluid in motion, and no body moves in it.
 bool is_still(const Case& c) {
   const auto given = [](const StateSpec& s) {
@@ -214,6 +254,7 @@ const char* face_upstream(const Vec3& velocity) {
 }  // namespace
 
 void sense_idle(const Case& c, Findings& found) {
+  tell_what_is_left_aside(c, found);
   const auto table = [&](const std::string& name) { return Idle(c, name, found); };
   for (std::size_t n = 0; n < c.bodies.size(); ++n)
     look_at_body(c.bodies[n], table(fmt::format("body.{}", n)));
@@ -259,6 +300,9 @@ void sense_idle(const Case& c, Findings& found) {
     if (c.classes[n].form == ParticleForm::sphere)
       table(fmt::format("sorter.class.{}", n))
           .refuse({"elongation", "flatness"}, "form is \"sphere\"", "another form", "form = \"rock\"");
+  if (c.output.fields_interval == 0.0)
+    table("output").refuse({"fields"}, "no fields are written", "fields_interval beside it",
+                           "fields_interval = \"1 ms\"");
   if (c.contact.time_step)
     table("contact").refuse({"time_step_fraction"}, "time_step is given", "either of the two",
                             "time_step = \"1 us\"");

@@ -57,7 +57,7 @@ void CandidateSearch::add_images(const Domain& domain, double skin) {
         NeighbourSearch::Item item = items_[n];
         part.image = true;
         part.shift[c] += side * domain.period[c];
-        part.which += (side > 0 ? 1 : 2) * (c == 0 ? 1 : c == 1 ? 3 : 9);
+        part.periods[c] += side > 0 ? 1 : -1;
         item.centre[c] += side * domain.period[c];
         items_.push_back(item);
         part_of_.push_back(part);
@@ -69,7 +69,7 @@ void CandidateSearch::put(std::size_t item, const PartKey& wall, int balls) {
   SolidPair& pair = solids_.emplace_back();
   pair.a = key_of(part_of_[item].index, balls);
   pair.b = wall;
-  pair.b.image = part_of_[item].which;
+  pair.b.image = image_of(part_of_[item].periods);
   pair.body_a = items_[item].body;
   pair.shift = -part_of_[item].shift;
 }

@@ -31,8 +31,8 @@ class CandidateSearch {
   struct Part {
     int index = 0;  // of a ball, or of a polytope after all balls
     bool can_be_pushed = true, only_ball = false, image = false;
-    Vec3 shift{0, 0, 0};  // m, from the part to its image
-    int which = 0;        // of the images: a digit 0, 1, 2 for each direction
+    Vec3 shift{0, 0, 0};               // m, from the part to its image
+    Eigen::Vector3i periods{0, 0, 0};  // by which it is moved
   };
   void list_parts(const Parts& parts, std::span<const Body> bodies);
   void add_images(const Domain& domain, double skin);

@@ -274,7 +274,7 @@ Touch find_touch(const SolidPair& pair, const Parts& parts, std::span<const Body
                  std::span<const Wall> walls, const Domain& domain) {
   if (pair.body_b < 0) {
     Touch t = touch_wall(pair, parts, bodies, walls);
-    if (!(t.overlap > 0)) return t;
+    if (!(t.overlap > 0) || pair.b.kind == PartKind::wall_plane) return t;
     // A wall may reach over a periodic side and so meet its own image: each counts on its side of it.
     const Vec3 foot = pair.a.kind == PartKind::ball ? Vec3(t.point + 0.5 * t.overlap * t.normal) : t.point;
     for (int c = 0; c < 3; ++c) {

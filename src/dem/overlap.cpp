@@ -12,6 +12,7 @@ using Polygon = std::vector<Vec3>;
 
 constexpr double kRounding = 1e-15;  // of a solid's size
 constexpr double kHair = 1e-10;      // of the sum of two: by so much the first is made larger, see below
+constexpr double kFilm = 3.0;        // hairs: what is no thicker has the shape of its rounding errors
 
 /// Of a flat convex face: from one point to another. In no order: sums and cuts need none.
 struct CutEdge {
@@ -305,6 +306,11 @@ Vec3 seams_within(Scratch& s, const Polytope& p, std::span<const Vec3> vertices,
   return total;
 }
 
+/// The overlap, or none where it is but a film: a face that lands would be pushed where rounding says.
+Overlap thicker_than(double film, const Overlap& o) {
+  return o.volume > film * o.area.norm() ? o : Overlap{};
+}
+
 }  // namespace
 
 Overlap overlap_half_space(const Polytope& a, const Vec3& normal, double offset) {
@@ -386,7 +392,7 @@ Overlap overlap_polytopes(const Polytope& a, const Polytope& b, const Mat3& rota
   o.area = cut_a == cut_b ? Vec3(0.5 * ((area_b - seams_b) - (area_a - seams_a)))
            : cut_b        ? Vec3(area_b - seams_b)
                           : Vec3(seams_a - area_a);
-  return o;
+  return thicker_than(kFilm * hair, o);
 }
 
 Overlap overlap_cell(const Polytope& a, std::span<const HalfSpace> planes) {
@@ -436,7 +442,7 @@ Overlap overlap_cell(const Polytope& a, std::span<const HalfSpace> planes) {
   o.volume = sums.volume;
   o.centroid = sums.apex + sums.moment / sums.volume;
   o.depth = planes[0].offset - planes[0].normal.dot(o.centroid);
-  return o;
+  return thicker_than(kFilm * hair, o);
 }
 
 }  // namespace ejecta

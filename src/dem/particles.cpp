@@ -376,7 +376,10 @@ void Particles::note_friction() {
                            0.0,
                            h.dent});
     else if (h.side < 0 && !surface.two_sided())  // on its way through from behind, which leaves no dent
-      friction_.push_back({.ball = p.a.index, .wall = p.b.index, .dent = 0.0});
+      friction_.push_back({.ball = p.a.index,
+                           .wall = p.b.index,
+                           .dent = 0.0,
+                           .region = surface.triangles()[static_cast<std::size_t>(p.b.solid)].region});
   }
   for (int n = 0; n < balls_.pair_count(); ++n) {
     const auto [ball, plane] = balls_.pair(n);
@@ -390,8 +393,10 @@ void Particles::note_friction() {
 void Particles::pass_friction_on() {
   for (const Friction& f : friction_) {
     const Wall& wall = walls_[static_cast<std::size_t>(f.wall)];
-    const int planes = 2 * static_cast<int>(wall.surface->regions().size());
-    const int as_plane = balls_.find_plane(f.ball, wall.first_plane, wall.first_plane + planes);
+    const int regions = static_cast<int>(wall.surface->regions().size());
+    const int from = wall.first_plane + 2 * std::max(0, f.region),
+              to = f.region < 0 ? wall.first_plane + 2 * regions : from + 2;
+    const int as_plane = balls_.find_plane(f.ball, from, to);
     if (f.plane) {
       if (as_plane < 0) solids_.hand_over(f.ball, f.wall, f.normal, f.history, f.energy);
     } else if (as_plane >= 0 && balls_.friction(as_plane) == std::array<double, 6>{}) {

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <limits>
+#include <map>
 #include <span>
 #include <vector>
 
@@ -122,6 +123,7 @@ class Particles {
   void find_contacts(double dt);
   bool moves(std::size_t n) const;
   void note_size(const Shape& shape);
+  void join_walls();
   void enter_and_leave();
   void enter_and_leave(int begin, int end, int& looks);
   bool inside(const Body& b) const;
@@ -138,8 +140,14 @@ class Particles {
     double overlap = 0.0;     // m; 0: nowhere by more than a thousandth of its size
     int body = 0, other = 0;  // other: body, or -1 - n for wall n
     Vec3 normal{0, 0, 1};     // the way out
+    double way = 0.0;         // m, how far that is: of a corner more than its mean dent
   };
-  Dent deepest(const CandidateSearch& found) const;
+  /// `only`: of this body, if not -1.
+  Dent deepest(const CandidateSearch& found, int only = -1) const;
+  /// How far a polytope must move along a contact's normal to be clear of what it touches, m.
+  double way_out(const SolidPair& pair, const Touch& touch) const;
+  /// Near where it is, where the body of a dent would touch nothing.
+  Vec3 clear_place(const Dent& dent) const;
   Dent deepest_in_walls(std::size_t n) const;
   void require_clear(const Dent& dent, const char* when) const;
   [[noreturn]] void throw_diverged() const;
@@ -165,12 +173,13 @@ class Particles {
     bool waiting = false;
     Vec3 velocity{0, 0, 0}, spin{0, 0, 0};
   };
-  std::vector<Launch> launches_;  // of bodies that rest until they are released
-  std::vector<char> changes_;     // in which blocks of bodies some may come or go
-  std::vector<char> packed_;      // which bodies spheres_ holds
-  std::vector<char> pushed_;      // by solids: force_ and torque_ are not zero
-  std::vector<Vec3> listed_at_;   // positions for which candidates were listed
-  std::vector<double> turned_;    // m, no part of a body has moved farther by its turning since
+  std::vector<Launch> launches_;            // of bodies that rest until they are released
+  std::map<int, Eigen::Vector3i> crossed_;  // bodies that came back, and the periods they went through
+  std::vector<char> changes_;               // in which blocks of bodies some may come or go
+  std::vector<char> packed_;                // which bodies spheres_ holds
+  std::vector<char> pushed_;                // by solids: force_ and torque_ are not zero
+  std::vector<Vec3> listed_at_;             // positions for which candidates were listed
+  std::vector<double> turned_;              // m, no part of a body has moved farther by its turning since
   /// The two largest of some lengths (or squares): no two bodies have come nearer by more than their sum.
   template <class T>
   struct Farthest {
@@ -196,6 +205,7 @@ class Particles {
     bool plane = false;
     double energy = 0.0;  // J, of a contact with a plane
     double dent = 1.0;    // of one with a triangle: of its overlap, what its energy suffices for
+    int region = -1;      // the only one of the surface to which this matters
   };
   std::vector<Friction> friction_;
   BallContacts balls_;

@@ -68,9 +68,15 @@ void Particles::enter_and_leave() {
         changes_[static_cast<std::size_t>(block)] = true;
   });
   int looks = 0;
+  crossed_.clear();
   for (int block = 0; block < static_cast<int>(changes_.size()); ++block)
     if (changes_[static_cast<std::size_t>(block)])
       enter_and_leave(block * kPresenceBlock, std::min((block + 1) * kPresenceBlock, count), looks);
+  if (crossed_.empty()) return;
+  solids_.follow([&](int body) {
+    const auto found = crossed_.find(body);
+    return found == crossed_.end() ? Eigen::Vector3i(0, 0, 0) : found->second;
+  });
 }
 
 /// What a body brings or takes away in energy is work from outside, so that the ledger stays closed.
@@ -92,12 +98,14 @@ void Particles::enter_and_leave(int begin, int end, int& looks) {
     if (presence_[n] == Presence::gone) continue;
     if (inside(b)) continue;
     const double before = mechanical_energy(n);
-    bool out = false, wrapped = false;
+    bool out = false;
+    Eigen::Vector3i crossed(0, 0, 0);
     for (int c = 0; c < 3; ++c) {
       if (b.position[c] >= domain_.low[c] && b.position[c] < domain_.high[c]) continue;
       if (domain_.period[c] > 0) {
-        b.position[c] -= domain_.period[c] * std::floor((b.position[c] - domain_.low[c]) / domain_.period[c]);
-        wrapped = true;
+        const double periods = std::floor((b.position[c] - domain_.low[c]) / domain_.period[c]);
+        b.position[c] -= domain_.period[c] * periods;
+        crossed[c] = periods > 0 ? 1 : -1;
       } else {
         out = true;
       }
@@ -105,9 +113,10 @@ void Particles::enter_and_leave(int begin, int end, int& looks) {
     if (out) {
       show(n, Presence::gone);
       outer_work_ -= before;
-    } else if (wrapped) {
+    } else if (!crossed.isZero()) {
       parts_.update(static_cast<int>(n), b, b.velocity, b.angular_velocity);
       outer_work_ += mechanical_energy(n) - before;
+      crossed_[static_cast<int>(n)] = crossed;
       relist_ = true;
     }
   }

@@ -35,9 +35,9 @@ struct Meeting {
   double least = 0.0, most = 0.0;  // J, that the spring may hold at this dent
 };
 
+/// Walls that lie beside each other are one surface to a ball, as a belt and the chute after it.
 bool same_surface(const SolidPair& p, const SolidPair& q) {
-  if (p.a != q.a || p.b.kind != q.b.kind) return false;
-  return p.b.kind == PartKind::wall_triangle ? p.b.index == q.b.index : p.body_b == q.body_b;
+  return p.a == q.a && p.b.kind == q.b.kind && p.body_b == q.body_b;
 }
 
 void apply_law(SolidPair& pair, Meeting& m, const PairConstants<double>& p, bool tension, double dt) {
@@ -65,6 +65,18 @@ void apply_law(SolidPair& pair, Meeting& m, const PairConstants<double>& p, bool
 }
 
 }  // namespace
+
+int image_of(const Eigen::Vector3i& periods) {
+  int image = 0;
+  for (int c = 2; c >= 0; --c) image = 3 * image + (periods[c] + 3) % 3;
+  return image;
+}
+
+int image_after(int image, const Eigen::Vector3i& crossed) {
+  Eigen::Vector3i periods = crossed;
+  for (int c = 0; c < 3; ++c, image /= 3) periods[c] += image % 3;
+  return image_of(periods.unaryExpr([](int n) { return n % 3; }));
+}
 
 struct SolidContacts::World {
   const Parts& parts;
@@ -142,6 +154,12 @@ void SolidContacts::hand_over(int ball, int wall, const Vec3& normal, const std:
   h.energy = stored + energy;
 }
 
+void SolidContacts::sort() {
+  std::sort(pairs_.begin(), pairs_.end(),
+            [](const SolidPair& p, const SolidPair& q) { return std::pair(p.a, p.b) < std::pair(q.a, q.b); });
+  arrange();
+}
+
 void SolidContacts::arrange() {
   const int count = static_cast<int>(pairs_.size());
   const auto pair = [&](int n) -> const SolidPair& { return pairs_[static_cast<std::size_t>(n)]; };
@@ -165,10 +183,10 @@ void SolidContacts::arrange() {
   first_.push_back(count);
 }
 
-/// Which contacts of a ball with one surface count, however the surface is divided: those where its distance
-/// is least in all directions along the surface. A rim is none where another part that has it is nearer; and
-/// in a hollow flatter than that the ball's dents would stay apart, the deepest is the contact. What the
-/// others remember of friction goes to the contact that takes their place.
+/// Which contacts of a ball with one surface count, however it is divided (all walls are one): those where
+/// its distance is least in all directions along the surface. A rim is none where another part that has it is
+/// nearer; and in a hollow flatter than that the ball's dents would stay apart, the deepest is the contact.
+/// What the others remember of friction goes to the contact that takes their place.
 void SolidContacts::choose(const World& world, int begin, int end) {
   const auto pair = [&](int n) -> SolidPair& { return pairs_[static_cast<std::size_t>(n)]; };
   const double radius = world.parts.row(pair(begin).a.index).radius;

@@ -71,6 +71,12 @@ struct SolidPair {
   double wall_power = 0.0;  ///< W, done by the moving wall on the body
 };
 
+/// Which of a wall's images a body meets: the periods (-1, 0, 1 along x, y, z) by which the body was moved to
+/// it, as one number. 0: the wall itself.
+int image_of(const Eigen::Vector3i& periods);
+/// That number once the body itself has gone through `crossed` periods.
+int image_after(int image, const Eigen::Vector3i& crossed);
+
 class SolidContacts {
  public:
   /// Candidates, sorted by (a, b), in exchange for the old ones; histories of pairs that were there before
@@ -103,6 +109,15 @@ class SolidContacts {
   double asked_rate() const { return asked_rate_; }  ///< sub-steps a second, by the last compute()
   void save(std::vector<double>& out) const;
   void load(StateReader& in, int bodies);
+  /// For bodies that came back on the other side of a periodic direction, `periods(body)` is how many they
+  /// went along x, y, z (0: none): the images of the walls that they touch go with them.
+  template <class Periods>
+  void follow(const Periods& periods) {
+    for (SolidPair& p : pairs_)
+      if (p.body_b < 0 && p.b.kind != PartKind::wall_plane)
+        p.b.image = image_after(p.b.image, periods(p.body_a));
+    sort();
+  }
   /// Keeps only pairs for which `rename` returns true after changing them.
   template <class Rename>
   void rename(const Rename& rename) {
@@ -112,6 +127,7 @@ class SolidContacts {
 
  private:
   struct World;
+  void sort();
   void arrange();
   void choose(const World& world, int begin, int end);
   /// Returns what these contacts ask of the time step, asked_rate_squared.

@@ -55,31 +55,32 @@ Polytope moved(const Polytope& p, const Mat3& rotation, const Vec3& translation)
   return q;
 }
 
+void find_seams(Polytope& p, const Polytope& q) {
+  const double slack = kSeam * (p.radius + q.radius);
+  if ((p.centre - q.centre).norm() > p.radius + q.radius + slack) return;
+  const Farthest farthest(q.vertices);
+  for (const Polytope::Face& f : p.faces) {
+    const double nearest = -farthest.along(-f.normal);
+    if (std::abs(nearest - f.offset) > slack) continue;
+    std::vector<Vec3> shared;
+    for (int c = 0; c < f.count; ++c) shared.push_back(corner(p, f, c));
+    for (const Polytope::Face& g : q.faces)
+      if (g.normal.dot(f.normal) > -0.99) shared = cut_polygon(shared, g.normal, g.offset);
+    if (shared.size() < 3) continue;
+    p.seams.push_back(f);
+    p.seams.back().first = static_cast<int>(p.corners.size());
+    p.seams.back().count = static_cast<int>(shared.size());
+    for (const Vec3& v : shared) {
+      p.corners.push_back(static_cast<int>(p.vertices.size()));
+      p.vertices.push_back(v);
+    }
+  }
+}
+
 void find_seams(std::vector<Polytope>& parts) {
   for (std::size_t n = 0; n < parts.size(); ++n)
-    for (std::size_t m = 0; m < parts.size(); ++m) {
-      Polytope& p = parts[n];
-      const Polytope& q = parts[m];
-      const double slack = kSeam * (p.radius + q.radius);
-      if (n == m || (p.centre - q.centre).norm() > p.radius + q.radius + slack) continue;
-      const Farthest farthest(q.vertices);
-      for (const Polytope::Face& f : p.faces) {
-        const double nearest = -farthest.along(-f.normal);
-        if (std::abs(nearest - f.offset) > slack) continue;
-        std::vector<Vec3> shared;
-        for (int c = 0; c < f.count; ++c) shared.push_back(corner(p, f, c));
-        for (const Polytope::Face& g : q.faces)
-          if (g.normal.dot(f.normal) > -0.99) shared = cut_polygon(shared, g.normal, g.offset);
-        if (shared.size() < 3) continue;
-        p.seams.push_back(f);
-        p.seams.back().first = static_cast<int>(p.corners.size());
-        p.seams.back().count = static_cast<int>(shared.size());
-        for (const Vec3& v : shared) {
-          p.corners.push_back(static_cast<int>(p.vertices.size()));
-          p.vertices.push_back(v);
-        }
-      }
-    }
+    for (std::size_t m = 0; m < parts.size(); ++m)
+      if (n != m) find_seams(parts[n], parts[m]);
 }
 
 TriangleMesh triangles_of(const Polytope& p) {

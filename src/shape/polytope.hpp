@@ -21,7 +21,8 @@ struct Polytope {
   };
   std::vector<Vec3> vertices;
   std::vector<Face> faces;
-  std::vector<Face> seams;    ///< the parts of its faces behind which another part of the same solid goes on
+  std::vector<Face> seams;    ///< the parts of its faces behind which another part of the same solid, or
+                              ///< another wall, goes on
   std::vector<int> corners;   ///< indices of vertices, face after face; seams last
   Vec3 centre{0, 0, 0};       ///< of mass, so inside it: of a sphere that holds it
   double radius = 0.0;        ///< of that sphere
@@ -39,7 +40,9 @@ Polytope convex_hull(const std::vector<Vec3>& points);
 Polytope polytope_box(const Vec3& half);
 /// The polytope moved to other axes: p -> rotation * p + translation.
 Polytope moved(const Polytope& p, const Mat3& rotation, const Vec3& translation);
-/// Notes where convex parts of one solid, which share no space, lie on each other.
+/// Notes where p lies on q, with which it shares no space.
+void find_seams(Polytope& p, const Polytope& q);
+/// The same of all convex parts of one solid.
 void find_seams(std::vector<Polytope>& parts);
 /// Fan triangles of its faces.
 TriangleMesh triangles_of(const Polytope& p);
