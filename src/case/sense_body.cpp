@@ -130,17 +130,20 @@ void sense_materials(const Case& c, Findings& found) {
   for (std::size_t n = 0; n < c.material_pairs.size(); ++n) {
     require_material(c, fmt::format("material_pair.{}.a", n), c.material_pairs[n].a, found);
     require_material(c, fmt::format("material_pair.{}.b", n), c.material_pairs[n].b, found);
-    const auto same = [&](const MaterialPairSpec& p) {
-      const MaterialPairSpec& q = c.material_pairs[n];
-      return (p.a == q.a && p.b == q.b) || (p.a == q.b && p.b == q.a);
+    const MaterialPairSpec& q = c.material_pairs[n];
+    const auto is_pair = [&](const std::string& other) {
+      const auto earlier = c.material_pairs.begin() + static_cast<std::ptrdiff_t>(n);
+      return std::any_of(c.material_pairs.begin(), earlier, [&](const MaterialPairSpec& p) {
+        return (p.a == q.a && p.b == other) || (p.a == other && p.b == q.a);
+      });
     };
-    if (std::any_of(c.material_pairs.begin(), c.material_pairs.begin() + static_cast<std::ptrdiff_t>(n),
-                    same))
-      found.error(
-          fmt::format("material_pair.{}.b", n),
-          fmt::format("\"{}\" and \"{}\" are a pair already", c.material_pairs[n].a, c.material_pairs[n].b),
-          "each two materials once, in either order",
-          fmt::format("a = \"{}\", b = \"{}\"", c.materials.front().name, c.materials.back().name));
+    if (!is_pair(q.b)) continue;
+    std::string example = "no second [[material_pair]] of the two: all their keys in one";
+    for (const MaterialSpec& m : c.materials)
+      if (!is_pair(m.name)) example = fmt::format("b = \"{}\"", m.name);
+    found.error(fmt::format("material_pair.{}.b", n),
+                fmt::format("\"{}\" and \"{}\" are a pair already", q.a, q.b),
+                "each two materials once, in either order", example);
   }
   if (c.contact.law == ContactLaw::linear && c.contact.linear_stiffness <= 0.0)
     found.error("contact.linear_stiffness", "the linear law needs its stiffness", "a stiffness, more than 0",

@@ -58,6 +58,13 @@ TEST(Sense, ALaunchWithoutABody) {
               Contains(HasSubstr("no body comes from the belt")));
 }
 
+TEST(Sense, KeysThatTheModelsLeaveAsideAreNamed) {
+  EXPECT_THAT(warnings({"flow.solver=none"}, "settling"),
+              Contains(AllOf(HasSubstr("`grid.x.cells`"), HasSubstr("nothing with flow.solver \"none\""))));
+  EXPECT_THAT(warnings({"boundary.x_max.type=wall", "boundary.x_max.temperature=300 K"}, "settling"),
+              Contains(AllOf(HasSubstr("`boundary.x_max.temperature`"), HasSubstr("does nothing"))));
+}
+
 TEST(Extent, WidthsOfAGradedBlockAreAGeometricSeries) {
   double sum = 0.0;
   for (int i = 0; i < 10; ++i) sum += cell_width(1.0, 10, 4.0, i);
