@@ -57,9 +57,9 @@ Archive::Archive(const Case& c, Model& model, const RunFiles& files, const Outpu
                                       .files = files_of(c)};
   std::optional<double> resumed;
   if (files.resume) {
-    resumed = find_checkpoint(note);
     refuse_another_case(provenance.input);
     refuse_changed_files(provenance.files);
+    resumed = find_checkpoint(note);
     restore_model(model);  // before anything is cut off what the run has written
   }
   // First of all what says that this is a run: killed here, it is not in the way of the next.
