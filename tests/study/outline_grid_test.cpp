@@ -74,7 +74,7 @@ TEST(OutlineGrid, TheStatedErrorCoversRandomMargins) {
   for (int n = 0; n < 100; ++n) {
     const Margin margin = random_margin(n);
     const Outline o = mapped_on_grid(on_grid(6e-3, 3e-3), margin).outline();
-    covered += std::abs(o.area.value - counted_area(margin, kGridWindow, 400)) <= o.area.error;
+    covered += std::abs(o.area.value - counted_area(margin, kGridWindow, 200)) <= o.area.error;
   }
   EXPECT_GE(covered, 90);
 }

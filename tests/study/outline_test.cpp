@@ -322,7 +322,7 @@ TEST(OutlineCoverage, OfRandomMargins) {
   for (int n = 0; n < count; ++n) {
     const Margin margin = random_margin(n);
     const Outline o = mapped(half_plane(), margin, {}, 4).outline();
-    const double truth = counted_area(margin, kWindow, 600);
+    const double truth = counted_area(margin, kWindow, 300);
     covered += std::abs(o.area.value - truth) <= o.area.error;
     within += std::abs(o.area.value - truth) <= 0.02 * truth;
   }
