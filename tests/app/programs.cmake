@@ -15,9 +15,12 @@ else()
 endif()
 set_tests_properties(app.paraview_live PROPERTIES SKIP_RETURN_CODE 77 LABELS fast TIMEOUT 300)
 # Bodies without a fluid: shipped cases with what they expect.
-add_test(NAME app.bodies COMMAND ejecta validate cases/bodies validation/dem/chung-ooi-5.toml validation/dem/chung-ooi-6.toml
+add_test(NAME app.bodies COMMAND ejecta validate cases/bodies/belt-feed.toml cases/bodies/drop.toml cases/bodies/pile.toml validation/dem/chung-ooi-5.toml validation/dem/chung-ooi-6.toml
          validation/dem/chung-ooi-8.toml verification/dem/flip-period.toml WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
-set_tests_properties(app.bodies PROPERTIES LABELS fast TIMEOUT 600 COST 40)
+set_tests_properties(app.bodies PROPERTIES LABELS fast TIMEOUT 600 COST 15)
+# Three bodies of hundreds of spheres: half a minute and more.
+add_test(NAME app.angles COMMAND ejecta validate cases/bodies/angles.toml WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
+set_tests_properties(app.angles PROPERTIES LABELS slow TIMEOUT 900)
 # The jet that comes with the paper's cases, computed again: minutes.
 add_test(NAME app.stored_jet COMMAND ${Python3_EXECUTABLE} ${CMAKE_CURRENT_LIST_DIR}/stored_jet_test.py $<TARGET_FILE:ejecta>
          ${PROJECT_SOURCE_DIR}/cases/paper/10mm-cubic.toml)
