@@ -123,13 +123,17 @@ def _command(kind, case, directory):
     return shlex.join(["ejecta", kind, case.name, *_sets(case), "--out", directory])
 
 
+def _require_count(name, count):
+    if not 0 <= count <= 4096:
+        raise ValueError(f"{name}={count}\n  expected: 0 for as many as there is room for, or how many")
+
+
 def _run(kind, case, out, overwrite, resume, threads, callback, fields):
     case = as_case(case)
     directory = os.fspath(out) if out is not None else None
     if resume and not directory:
         raise ValueError("resume goes on with the run in a directory: say which, e.g. out=\"my-case.run\"")
-    if threads < 0:
-        raise ValueError(f"threads={threads}\n  expected: 0 for all cores, or how many")
+    _require_count("threads", threads)
     raw = _core.run(case._tree, kind, directory, overwrite, resume, threads, callback, fields,
                     _command(kind, case, directory) if directory else "", _note)
     return Result(raw, directory)
@@ -173,7 +177,7 @@ def _file_and_changes(case, directory, kind="run"):
         return [case._file, *_sets(case)]
     file = directory.parent / f"{directory.name}.toml"
     case.save(file)
-    return [str(file)]
+    return [os.path.join(os.curdir, file)]  # one that begins with "-" would be an option
 
 
 class Job:
@@ -251,6 +255,7 @@ def submit(case: CaseLike, *, out: str | os.PathLike[str], overwrite: bool = Fal
            threads: int = 0) -> Job:
     """Runs a case in a process of its own, which outlives this one: a Job with progress(), stop() and wait(). What the
     process says stands in OUT.log. Raises CaseError before anything is started."""
+    _require_count("threads", threads)
     case, directory = as_case(case), Path(out)
     case._tree.check()
     words = [program(), "run", *_file_and_changes(case, directory), "--out", str(directory)]
@@ -283,6 +288,8 @@ class Study:
 
 def _carry_out(kind, case, out, options, overwrite):
     """A command of the program on a case, to its end: its directory. ^C stops it; the same call goes on."""
+    for name, count in options.items():
+        _require_count(name.replace("-", "_"), count)
     case = as_case(case)
     directory = Path(out if out is not None else f"{Path(case.name).stem}.{kind}")
     words = [program(), kind, *_file_and_changes(case, directory, kind), "--out", str(directory), "-q"]

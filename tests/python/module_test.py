@@ -432,6 +432,29 @@ class Jobs(unittest.TestCase):
         result = ejecta.submit(BALL, out=directory).wait()
         self.assertEqual(physics(result.quantities), physics(ejecta.run(BALL).quantities))
 
+    def test_names_that_begin_with_a_dash(self):
+        folder = place("dashes")
+        folder.mkdir(parents=True)
+        self.addCleanup(os.chdir, os.getcwd())
+        os.chdir(folder)
+        ejecta.Case(BALL).save("-ball.toml")
+        for case in ("-ball.toml", BALL):
+            self.assertEqual(ejecta.submit(case, out="-ball.run", overwrite=True).wait().end, "decided")
+        ejecta.Case(dict(BALL, study={"quantities": ["/bodies/0/peak_speed_m_s"],
+                                      "vary": [{"key": "run.end_time", "values": [0.001, 0.002]}]})).save("-many.toml")
+        self.assertEqual(len(ejecta.study("-many.toml").runs), 2)
+        self.assertTrue(Path("-many.study/result.json").exists())
+
+    def test_numbers_that_cannot_be(self):
+        for options in ({"at_once": -1}, {"at_once": 2**32 + 1}):
+            with self.assertRaises((ValueError, ejecta.InputError)):
+                ejecta.study(BALL, out=place("none.study"), **options)
+        for threads in (-1, 2**32 + 1):
+            for act in (ejecta.run, ejecta.submit, ejecta.sort):
+                with self.assertRaises((ValueError, TypeError, ejecta.InputError), msg=f"{act} {threads}"):
+                    act(BALL, out=place("none.run"), threads=threads)
+                self.assertFalse((scratch / "none.run").exists())
+
     def test_study(self):
         case = ejecta.Case(dict(BALL, study={"quantities": ["/bodies/0/final_position_m/2"], "keep_runs": False},
                                 splitter={"edge": [0.1, 0.01]}))

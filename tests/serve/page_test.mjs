@@ -222,8 +222,28 @@ try {
     assert.ok(await there(), "the keyboard reaches it");
   };
   await tabTo(stop);
+
+  // The focus stays where it is while the list goes on: the row of the run is another one every second.
+  const focused = () => again.evaluate(() => document.activeElement.getAttribute("aria-label") ?? document.activeElement.tagName);
+  const renewed = async (name) => {
+    await row(again, name).locator("td.progress").evaluate((cell) => (cell.dataset.old = ""));
+    await again.waitForFunction((of) => !document.querySelector(`tr[data-job="${of}"] td.progress`).hasAttribute("data-old"), name, { timeout: 60000 });
+  };
+  await renewed("slow.run");
+  assert.equal(await focused(), "Stop slow.run");
+  await row(again, "small.run").getByRole("link", { name: "Report" }).focus(); // of a row that others pass
+  writeFileSync(path.join(scratch, "again.toml"), readFileSync(path.join(scratch, "small.toml")));
+  await again.evaluate(() => fetch("/api/start", { method: "POST", body: JSON.stringify({ case: "again.toml", kind: "run" }) }));
+  await again.waitForSelector(listed("again.run", "waiting"));
+  assert.equal(await focused(), "Report of small.run");
+  await again.getByRole("button", { name: "Cancel again.run" }).focus();
+  await again.keyboard.press("Enter");
+  await again.waitForSelector(listed("again.run"), { state: "detached" });
+  assert.notEqual(await focused(), "BODY", "what has gone leaves the focus to its neighbour");
+  await stop.focus();
   await again.keyboard.press("Enter");
   await again.waitForSelector(listed("slow.run", "stopped"), { timeout: 60000 });
+  assert.match(await focused(), /slow\.run$/);
   assert.ok(await again.getByRole("button", { name: "Resume slow.run" }).isVisible());
 
   // By the keyboard alone: a first case of somebody who has none, with the rock that he has as a file.

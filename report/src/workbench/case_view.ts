@@ -5,6 +5,7 @@ import { duration, fixed, thousands } from "../format";
 import { api, type Judgement, type Kind, type Problem, type SchemaSection } from "./api";
 import { drawingView } from "./drawing";
 import { Form } from "./form";
+import { renew } from "./renew";
 import { ShapePanel } from "./shape_panel";
 
 const PAUSE = 120; // ms without a key until the text is checked
@@ -118,7 +119,7 @@ export class CaseView {
     this.tellChanged();
     this.offer(judgement.commands ?? []);
     this.lock(false);
-    this.problems.replaceChildren(...judgement.problems.slice(0, 20).map((p) => this.problem(p)));
+    renew(this.problems, ...judgement.problems.slice(0, 20).map((p) => this.problem(p)));
     const faulty = new Map(judgement.problems.map((p) => [p.line, p.severity]));
     const count = this.text.value.split("\n").length;
     this.lines.replaceChildren(...[...Array(count).keys()].map((n) => h("span", { class: faulty.get(n + 1) ?? "" }, String(n + 1))));
@@ -127,7 +128,7 @@ export class CaseView {
       this.shapes.show(judgement.values, judgement.check?.bodies ?? []);
     }
     this.summary.classList.toggle("stale", !judgement.check); // until the faults are mended: what it was before
-    if (judgement.check) this.summary.replaceChildren(...(judgement.drawing ? [drawingView(judgement.drawing)] : []), ...this.facts(judgement));
+    if (judgement.check) renew(this.summary, ...(judgement.drawing ? [drawingView(judgement.drawing)] : []), ...this.facts(judgement));
   }
 
   private problem(p: Problem): HTMLElement {
@@ -181,7 +182,7 @@ export class CaseView {
   private offer(commands: Kind[]): void {
     if (this.starts.dataset["of"] === commands.join()) return;
     this.starts.dataset["of"] = commands.join();
-    this.starts.replaceChildren(...commands.map((kind, n) => {
+    renew(this.starts, ...commands.map((kind, n) => {
       const b = h("button", { type: "button", class: n === 0 && "primary", "data-start": kind }, START[kind]);
       b.addEventListener("click", () => void this.start(kind));
       return b;

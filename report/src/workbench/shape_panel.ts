@@ -4,6 +4,7 @@
 import { h } from "../dom";
 import { fixed } from "../format";
 import type { BodyCheck, Key, SchemaSection, Value } from "./api";
+import { renew } from "./renew";
 
 type Quaternion = [w: number, x: number, y: number, z: number];
 type Extent = [number, number, number];
@@ -70,7 +71,7 @@ export class ShapePanel {
     }
     for (const [id] of this.panels) if (!there.has(id)) this.panels.delete(id);
     const shown = [...this.panels.values()].map((panel) => panel.element);
-    if (shown.length !== this.element.childElementCount || shown.some((e, n) => this.element.children[n] !== e)) this.element.replaceChildren(...shown);
+    if (shown.length !== this.element.childElementCount || shown.some((e, n) => this.element.children[n] !== e)) renew(this.element, ...shown);
   }
 
   private scaleOf(body: number): number {

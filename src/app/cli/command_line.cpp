@@ -4,11 +4,13 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <filesystem>
 #include <string_view>
 
 #include "app/cli/commands.hpp"
 #include "base/exit_code.hpp"
 #include "base/parallel.hpp"
+#include "base/shell_word.hpp"
 #include "base/text.hpp"
 #include "output/build_info.hpp"
 
@@ -34,6 +36,9 @@ std::string wrong_words(const CLI::App& command, const CLI::ParseError& e) {
       std::find_if(left.begin(), left.end(), [](const std::string& word) { return word.starts_with('-'); });
   if (option == left.end())
     return left.empty() ? e.what() : fmt::format("\"{}\" is one word too many", left.front());
+  std::error_code none;
+  if (std::filesystem::exists(*option, none))
+    return fmt::format("\"{}\" is taken for an option\n  example:  {}", *option, path_word(*option));
   std::vector<std::string> known;
   for (const CLI::Option* o : command.get_options())
     for (const std::string& name : o->get_lnames()) known.push_back("--" + name);
