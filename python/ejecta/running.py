@@ -11,7 +11,7 @@ import signal
 import subprocess
 import time
 from pathlib import Path
-from typing import Any, Callable, Sequence
+from typing import Any, Callable, Sequence, Union
 
 from . import _core
 from .case import CaseLike, as_case
@@ -263,6 +263,40 @@ def submit(case: CaseLike, *, out: str | os.PathLike[str], overwrite: bool = Fal
     with open(_log_of(directory), "w") as log:
         return Job(directory, subprocess.Popen(words, stdin=subprocess.DEVNULL, stdout=log, stderr=log,
                                                start_new_session=True))
+
+
+RunLike = Union[Result, Job, Run, str, "os.PathLike[str]"]
+
+
+def _directories(runs):
+    """Of runs in whatever form they are at hand."""
+    found = [getattr(run, "directory", run) for run in runs]
+    if not found or None in found:
+        raise ValueError("it takes runs that have written files: those of run(case, out=...), or their directories")
+    return [os.fspath(directory) for directory in found]
+
+
+def report(*runs: RunLike, out: str | os.PathLike[str] | None = None) -> Path:
+    """Writes the page of a run again, or of several laid over each other, as `ejecta report` does: report.html in the first
+    directory unless `out` says where."""
+    directories = _directories(runs)
+    file = Path(out) if out is not None else Path(directories[0]) / "report.html"
+    _core.write_report(directories, str(file))
+    return file
+
+
+def table(*runs: RunLike, out: str | os.PathLike[str] = "results.csv") -> Path:
+    """Writes the results of runs as one table, .csv or .xlsx, as `ejecta table` does."""
+    _core.write_results(_directories(runs), os.fspath(out))
+    return Path(out)
+
+
+def paraview(run: RunLike) -> Path:
+    """Writes a view of a run for ParaView, as `ejecta paraview` does: view.py in its directory."""
+    directory, = _directories([run])
+    file = Path(directory) / "view.py"
+    file.write_text(_core.paraview_view(directory))
+    return file
 
 
 class Study:

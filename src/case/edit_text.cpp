@@ -108,7 +108,8 @@ std::string new_header(const EditedText& edited, const std::string& section) {
   const bool is_number = section.find_first_not_of("0123456789", dot + 1) == std::string::npos;
   if (!is_number && !(before && before->is_list())) return fmt::format("[{}]", section);
   const std::string next = fmt::format("{}.{}", list, before ? before->children.size() : 0);
-  if (section != next) throw InputError(fmt::format("there is no {}\n  expected: {}, the next one", section, next));
+  if (section != next)
+    throw InputError(fmt::format("there is no {}\n  expected: {}, the next one", section, next));
   return fmt::format("[[{}]]", list);
 }
 

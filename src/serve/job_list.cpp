@@ -11,6 +11,7 @@
 #include "base/parallel.hpp"
 #include "base/sha256.hpp"
 #include "base/shell_word.hpp"
+#include "base/told.hpp"
 #include "case/load.hpp"
 #include "output/output_file.hpp"
 #include "study/study.hpp"
@@ -264,7 +265,9 @@ void JobList::launch(const Job& job, int side_by_side) {
       throw InputError(fmt::format("{}, or what it reads, was changed while {} waited: start it again",
                                    job.case_name, job.name));
     processes_.start(words, folder_.path(), log);
-  } catch (const std::exception& e) {  // said where a run says what it has met
+  } catch (const InputError& e) {  // said where a run says what it has met
+    std::ofstream(log, std::ios::app) << "error: " << told(e) << "\n";
+  } catch (const std::exception& e) {
     std::ofstream(log, std::ios::app) << "error: " << e.what() << "\n";
   }
 }

@@ -13,6 +13,7 @@
 
 #include "base/error.hpp"
 #include "base/sha256.hpp"
+#include "base/told.hpp"
 #include "case/edit_text.hpp"
 #include "case/template.hpp"
 #include "output/output_file.hpp"
@@ -155,9 +156,9 @@ struct Workbench::Parts {
       try {
         std::rethrow_exception(p);
       } catch (const Conflict& e) {
-        refuse(response, 409, e.what());
+        refuse(response, 409, told(e));
       } catch (const InputError& e) {
-        refuse(response, 400, e.what());
+        refuse(response, 400, told(e));
       } catch (const nlohmann::json::exception&) {
         refuse(response, 400, "the request is not of the form that the page sends (JSON)");
       } catch (const std::exception& e) {

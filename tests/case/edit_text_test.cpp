@@ -75,7 +75,8 @@ TEST(EditText, RefusesWhatIsNoKey) {
 }
 
 TEST(EditText, AListGrowsByItsNextElementOnly) {
-  for (const char* path : {"body.3.name", "body.4294967296.name", "body.99999999999999999999.name", "body.-1.name", "wall.1.name"})
+  for (const char* path : {"body.3.name", "body.4294967296.name", "body.99999999999999999999.name",
+                           "body.-1.name", "wall.1.name"})
     EXPECT_THROW(with_key(kWritten, path, "\"c\""), InputError) << path;
 }
 

@@ -130,11 +130,13 @@ export class Form {
   }
 
   private mark(problems: Problem[]): void {
-    for (const [path, { field }] of this.fields) {
+    for (const [path, { field, key }] of this.fields) {
       const mine = problems.find((p) => p.key === path);
       const fault = field.querySelector<HTMLElement>(".fault")!;
       fault.hidden = !mine;
       fault.textContent = mine ? `${mine.what}${mine.expected ? `; expected: ${mine.expected}` : ""}` : "";
+      // What only another choice needs, another shape of the body, is out of the way.
+      field.hidden = key.default.startsWith("needed for") && !mine && !field.classList.contains("given");
       fault.className = `fault ${mine?.severity ?? ""}`;
       field.querySelector("input, select")!.setAttribute("aria-invalid", String(mine?.severity === "error"));
     }

@@ -8,6 +8,7 @@ import { keepingFocus, renew } from "./renew";
 
 const RANK: Record<Job["state"], number> = { running: 0, starting: 0, waiting: 1, failed: 2, diverged: 2, stopped: 2, done: 2 };
 const EMPTY = "Nothing has been started yet: open a case and start it.";
+const BARE = "There is no case in this folder yet. Make one with \u201cNew case\u201d, give it your rock with \u201cShape from a file\u201d, and start it.";
 
 export class JobListView {
   private readonly body = h("tbody", {});
@@ -20,14 +21,14 @@ export class JobListView {
   private readonly note = h("p", { class: "note", role: "status" });
   private readonly atOnce = h("input", { type: "number", id: "at-once", min: 1, max: 64, value: 1 });
   private readonly filter = h("input", { type: "search", id: "filter", placeholder: "part of a name", autocomplete: "off" });
+  private readonly table = h("div", { class: "table", role: "region", "aria-label": "Table of runs", tabindex: 0, hidden: true }, h("table", {},
+    h("thead", {}, h("tr", {}, ...["Name", "State", "Progress", "Result", ""].map((name) => h("th", { scope: "col" }, name || h("span", { class: "unseen" }, "Actions"))))),
+    this.body));
   readonly element = h("section", { class: "jobs", "aria-labelledby": "jobs-name" },
     h("header", { class: "bar" }, h("h1", { id: "jobs-name" }, "Runs"),
       h("span", { class: "pair" }, h("label", { for: "filter" }, "Show"), this.filter),
       h("span", { class: "pair" }, h("label", { for: "at-once" }, "Side by side"), this.atOnce), ...this.together),
-    this.note,
-    h("div", { class: "table", role: "region", "aria-label": "Table of runs", tabindex: 0 }, h("table", {},
-      h("thead", {}, h("tr", {}, ...["Name", "State", "Progress", "Result", ""].map((name) => h("th", { scope: "col" }, name || h("span", { class: "unseen" }, "Actions"))))),
-      this.body)));
+    this.note, this.table);
   private readonly rows = new Map<string, { row: HTMLTableRowElement; shown: string }>();
   private readonly actions = new JobActions((words) => (this.note.textContent = words));
 
@@ -38,7 +39,7 @@ export class JobListView {
     this.filter.addEventListener("input", () => this.sift());
   }
 
-  show({ jobs, at_once }: FolderState): void {
+  show({ jobs, cases, at_once }: FolderState): void {
     if (document.activeElement !== this.atOnce) this.atOnce.value = String(at_once);
     const ordered = [...jobs].sort((a, b) => RANK[a.state] - RANK[b.state] || (a.before ?? 0) - (b.before ?? 0) || (a.name < b.name ? -1 : 1));
     const known = new Set(jobs.map((job) => job.name));
@@ -58,8 +59,9 @@ export class JobListView {
       }
       this.sift();
     });
-    if (jobs.length === 0) this.note.textContent = EMPTY;
-    else if (this.note.textContent === EMPTY) this.note.textContent = "";
+    if (jobs.length === 0) this.note.textContent = cases.length > 0 ? EMPTY : BARE;
+    else if ([EMPTY, BARE].includes(this.note.textContent!)) this.note.textContent = "";
+    this.table.hidden = jobs.length === 0;
   }
 
   private sift(): void {

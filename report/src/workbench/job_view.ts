@@ -67,7 +67,7 @@ export class JobView {
       case "run": {
         const live = new LiveRun(job.name);
         this.content.replaceChildren(live.element);
-        return () => live.look();
+        return ({ state }) => live.look(state === "done");
       }
       case "study":
         return async ({ name }) => renew(this.content, studyContent(await api.study<StudyResult>(name)));

@@ -21,7 +21,13 @@ function followTheme(): void {
 
 async function start(): Promise<void> {
   const app = document.getElementById("app")!;
-  const schema = api.schema(); // it is large, and the list of runs needs none of it
+  // It is large, and the list of runs needs none of it. What did not come, as the server had gone, is asked for again.
+  let asked: ReturnType<typeof api.schema> | null = null;
+  const schema = (): ReturnType<typeof api.schema> => (asked ??= api.schema().catch((error: Error) => {
+    asked = null;
+    throw error;
+  }));
+  schema().catch(() => undefined);
   const main = h("main", { id: "content" });
   const list = h("ul", {});
   const note = h("p", { class: "note", role: "status" });
@@ -57,7 +63,7 @@ async function start(): Promise<void> {
   const jobs = new JobListView(showJob);
   const showJobs = (): void => swap(jobs.element, "");
   const showCase = async (name: string): Promise<void> => {
-    const shown = new CaseView(name, await schema, showJob, (copy) => {
+    const shown = new CaseView(name, await schema(), showJob, (copy) => {
       add(copy);
       void showCase(copy);
     });
@@ -121,7 +127,7 @@ async function start(): Promise<void> {
     update(now);
     resolve();
   }, (yes) => (lost.hidden = yes)));
-  await Promise.all([first, schema]);
+  await first;
   document.documentElement.dataset["ready"] = "true";
 }
 

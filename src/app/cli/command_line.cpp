@@ -12,6 +12,7 @@
 #include "base/parallel.hpp"
 #include "base/shell_word.hpp"
 #include "base/text.hpp"
+#include "base/told.hpp"
 #include "output/build_info.hpp"
 
 namespace ejecta {
@@ -71,9 +72,7 @@ bool is_command(const CLI::App& app, const std::string& word) {
 void print_input_error(const InputError& e) {
   // A list of the errors of a case says so itself, error by error.
   const bool list = std::string_view(e.what()).find("error: ") != std::string_view::npos;
-  fmt::print(stderr, "{}{}\n", list ? "" : "error: ", e.what());
-  if (!e.advice.expected.empty()) fmt::print(stderr, "  expected: {}\n", e.advice.expected);
-  if (!e.advice.example.empty()) fmt::print(stderr, "  example:  {}\n", e.advice.example);
+  fmt::print(stderr, "{}{}\n", list ? "" : "error: ", told(e));
 }
 
 int run_command_line(int argc, const char* const* argv) {
