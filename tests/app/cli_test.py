@@ -115,6 +115,17 @@ class CommandLine(unittest.TestCase):
         self.assertIn("is a file", ejecta("report", self.case()).stderr)
         self.assertEqual(ejecta("run", self.case(), "--threads", "0").returncode, 2)
 
+    def test_what_people_type_first(self):
+        self.assertEqual(ejecta("help").stdout, ejecta("--help").stdout)
+        self.assertEqual(ejecta("help", "run").stdout, ejecta("run", "--help").stdout)
+        self.assertEqual(ejecta("-v").stdout, ejecta("--version").stdout)
+        self.assertEqual(ejecta("help", "nothing").returncode, 2)
+        self.assertEqual(ejecta("check", self.case(), "--threads", "1").returncode, 0)
+        refused = ejecta("check", self.case(), "--set", "body.0.diametr=1").stderr
+        self.assertIn("--set body.0.diametr=1: error:", refused, "it is no line of a file")
+        for word in ("margin", "clearance", "ejected", "purity"):
+            self.assertRegex(ejecta("explain", word).stdout, rf"(?m)^Words of results(.|\n)*{word}")
+
     def test_files_whose_names_begin_with_a_dash(self):
         """Behind "--", or as ./-x; what such a run leaves and says can be used as it stands."""
         name = pathlib.Path(self.case(BOUNCE)).rename("-ball.toml").name

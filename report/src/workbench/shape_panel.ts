@@ -93,7 +93,7 @@ export class ShapePanel {
 
   private panel(body: number, file: string): { element: HTMLElement; fill: (size: Extent | undefined) => void } {
     const id = `shape-${body}`;
-    const unit = h("select", { id: `${id}-unit` }, ...this.lengths.units.map((u) => h("option", { value: u }, u)), h("option", { value: "", disabled: true }, "another"));
+    const unit = h("select", { id: `${id}-unit` }, ...this.lengths.units.map((u) => h("option", { value: u }, u)), h("option", { value: "", disabled: true }, "none of these"));
     unit.addEventListener("change", () => this.change(`body.${body}.scale`, String(this.factor(unit.value))));
     const size = h("span", { class: "size" });
     const guess = h("p", { class: "note" });

@@ -77,6 +77,11 @@ void print_input_error(const InputError& e) {
 
 int run_command_line(int argc, const char* const* argv) {
   flush_denormals();
+  if (argc > 1 && std::string_view(argv[1]) == "help") {  // what people type first: help, help COMMAND
+    std::vector<const char*> words{argv[0], "--help"};
+    if (argc > 2) words.insert(words.begin() + 1, argv[2]);
+    return run_command_line(static_cast<int>(words.size()), words.data());
+  }
   CLI::App app(
       "Ejecta predicts which particles an air-jet sorter ejects: it computes the pulsed air jet, the "
       "particles\n"
@@ -86,8 +91,8 @@ int run_command_line(int argc, const char* const* argv) {
       "  ejecta check my-case.toml      what the run will be\n"
       "  ejecta run my-case.toml        runs it\n",
       "ejecta");
-  app.set_version_flag("--version", fmt::format("{} ({}, kernels for {})", output::version(),
-                                                output::git_revision(), output::kernels()));
+  app.set_version_flag("-v,--version", fmt::format("{} ({}, kernels for {})", output::version(),
+                                                   output::git_revision(), output::kernels()));
   app.require_subcommand(1);
   app.get_formatter()->label("SUBCOMMAND", "COMMAND");
   app.get_formatter()->label("Positionals", "Arguments");
