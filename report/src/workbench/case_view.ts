@@ -215,7 +215,8 @@ export class CaseView {
     if (!body?.given) return;
     const old = JSON.parse(body.text) as string;
     const said = this.text.value.replace(/#.*$/gm, "");
-    if (said.split(body.text).length > 2 || said.includes(`body.${old}.`)) return;
+    const own = title?.text === body.text ? 2 : 1; // the title and the name itself
+    if (said.split(body.text).length - 1 > own || said.includes(`body.${old}.`)) return;
     this.change("body.0.name", JSON.stringify(name));
     if (title?.given && title.text.includes(old)) this.change("run.title", JSON.stringify(name));
   }
