@@ -1,4 +1,5 @@
 #include "base/error.hpp"
+#include "base/told.hpp"
 #include "bindings.hpp"
 #include "case/problem.hpp"
 #include "simulation/forecast.hpp"
@@ -8,9 +9,9 @@ namespace {
 
 /// Raises the exception of that name of ejecta.errors.
 template <class... More>
-void raise(const char* name, const std::exception& e, More&&... more) {
+void raise(const char* name, const std::string& words, More&&... more) {
   const py::object type = py::module_::import("ejecta.errors").attr(name);
-  const py::object error = type(e.what(), std::forward<More>(more)...);
+  const py::object error = type(words, std::forward<More>(more)...);
   PyErr_SetObject(type.ptr(), error.ptr());
 }
 
@@ -27,13 +28,13 @@ void bind_errors(py::module_&) {
     try {
       if (p) std::rethrow_exception(p);
     } catch (const CaseError& e) {
-      raise("CaseError", e, problems_of(e));
+      raise("CaseError", e.what(), problems_of(e));
     } catch (const InputError& e) {
-      raise("InputError", e);
+      raise("InputError", told(e));
     } catch (const DivergedError& e) {
-      raise("DivergedError", e);
+      raise("DivergedError", e.what());
     } catch (const Error& e) {
-      raise("Error", e);
+      raise("Error", e.what());
     }
   });
 }

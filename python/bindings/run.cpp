@@ -6,6 +6,9 @@
 #include "base/stopwatch.hpp"
 #include "bindings.hpp"
 #include "case_tree.hpp"
+#include "output/paraview_view.hpp"
+#include "output/report.hpp"
+#include "output/results_table.hpp"
 #include "output/verdict.hpp"
 #include "workflow/watched_run.hpp"
 
@@ -164,6 +167,21 @@ void bind_run(py::module_& m) {
         py::arg("note"));
   m.def(
       "is_running", [](const std::string& directory) { return is_claimed(directory); }, py::arg("directory"));
+  // What hands runs to people and other programs.
+  using Paths = std::vector<std::string>;
+  const auto paths = [](const Paths& names) {
+    return std::vector<std::filesystem::path>(names.begin(), names.end());
+  };
+  m.def(
+      "write_report",
+      [paths](const Paths& runs, const std::string& file) { output::write_report(paths(runs), file); },
+      py::arg("runs"), py::arg("file"));
+  m.def(
+      "write_results",
+      [paths](const Paths& runs, const std::string& file) { output::write_results(paths(runs), file); },
+      py::arg("runs"), py::arg("file"));
+  m.def(
+      "paraview_view", [](const std::string& run) { return output::paraview_view(run); }, py::arg("run"));
   m.def("verdict_sentence", [](const std::string& result_json) {
     return output::verdict_sentence(nlohmann::ordered_json::parse(result_json));
   });

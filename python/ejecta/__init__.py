@@ -29,7 +29,8 @@ else:
     from . import keys
     from .case import Case, shape
     from .running import (
-        Campaign, Check, Job, Margin, Result, Share, Sorting, Study, campaign, check, jet, map, run, sort, study, submit,
+        Campaign, Check, Job, Margin, Result, Share, Sorting, Study, campaign, check, jet, map, paraview, report, run, sort,
+        study, submit, table,
     )
 
     __version__ = _core.version

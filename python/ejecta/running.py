@@ -11,7 +11,7 @@ import signal
 import subprocess
 import time
 from pathlib import Path
-from typing import Any, Callable, Sequence
+from typing import Any, Callable, Sequence, Union
 
 from . import _core
 from .case import CaseLike, as_case
@@ -123,13 +123,17 @@ def _command(kind, case, directory):
     return shlex.join(["ejecta", kind, case.name, *_sets(case), "--out", directory])
 
 
+def _require_count(name, count):
+    if not 0 <= count <= 4096:
+        raise ValueError(f"{name}={count}\n  expected: 0 for as many as there is room for, or how many")
+
+
 def _run(kind, case, out, overwrite, resume, threads, callback, fields):
     case = as_case(case)
     directory = os.fspath(out) if out is not None else None
     if resume and not directory:
         raise ValueError("resume goes on with the run in a directory: say which, e.g. out=\"my-case.run\"")
-    if threads < 0:
-        raise ValueError(f"threads={threads}\n  expected: 0 for all cores, or how many")
+    _require_count("threads", threads)
     raw = _core.run(case._tree, kind, directory, overwrite, resume, threads, callback, fields,
                     _command(kind, case, directory) if directory else "", _note)
     return Result(raw, directory)
@@ -173,7 +177,7 @@ def _file_and_changes(case, directory, kind="run"):
         return [case._file, *_sets(case)]
     file = directory.parent / f"{directory.name}.toml"
     case.save(file)
-    return [str(file)]
+    return [os.path.join(os.curdir, file)]  # one that begins with "-" would be an option
 
 
 class Job:
@@ -251,6 +255,7 @@ def submit(case: CaseLike, *, out: str | os.PathLike[str], overwrite: bool = Fal
            threads: int = 0) -> Job:
     """Runs a case in a process of its own, which outlives this one: a Job with progress(), stop() and wait(). What the
     process says stands in OUT.log. Raises CaseError before anything is started."""
+    _require_count("threads", threads)
     case, directory = as_case(case), Path(out)
     case._tree.check()
     words = [program(), "run", *_file_and_changes(case, directory), "--out", str(directory)]
@@ -258,6 +263,40 @@ def submit(case: CaseLike, *, out: str | os.PathLike[str], overwrite: bool = Fal
     with open(_log_of(directory), "w") as log:
         return Job(directory, subprocess.Popen(words, stdin=subprocess.DEVNULL, stdout=log, stderr=log,
                                                start_new_session=True))
+
+
+RunLike = Union[Result, Job, Run, str, "os.PathLike[str]"]
+
+
+def _directories(runs):
+    """Of runs in whatever form they are at hand."""
+    found = [getattr(run, "directory", run) for run in runs]
+    if not found or None in found:
+        raise ValueError("it takes runs that have written files: those of run(case, out=...), or their directories")
+    return [os.fspath(directory) for directory in found]
+
+
+def report(*runs: RunLike, out: str | os.PathLike[str] | None = None) -> Path:
+    """Writes the page of a run again, or of several laid over each other, as `ejecta report` does: report.html in the first
+    directory unless `out` says where."""
+    directories = _directories(runs)
+    file = Path(out) if out is not None else Path(directories[0]) / "report.html"
+    _core.write_report(directories, str(file))
+    return file
+
+
+def table(*runs: RunLike, out: str | os.PathLike[str] = "results.csv") -> Path:
+    """Writes the results of runs as one table, .csv or .xlsx, as `ejecta table` does."""
+    _core.write_results(_directories(runs), os.fspath(out))
+    return Path(out)
+
+
+def paraview(run: RunLike) -> Path:
+    """Writes a view of a run for ParaView, as `ejecta paraview` does: view.py in its directory."""
+    directory, = _directories([run])
+    file = Path(directory) / "view.py"
+    file.write_text(_core.paraview_view(directory))
+    return file
 
 
 class Study:
@@ -283,6 +322,8 @@ class Study:
 
 def _carry_out(kind, case, out, options, overwrite):
     """A command of the program on a case, to its end: its directory. ^C stops it; the same call goes on."""
+    for name, count in options.items():
+        _require_count(name.replace("-", "_"), count)
     case = as_case(case)
     directory = Path(out if out is not None else f"{Path(case.name).stem}.{kind}")
     words = [program(), kind, *_file_and_changes(case, directory, kind), "--out", str(directory), "-q"]

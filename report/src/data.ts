@@ -234,3 +234,14 @@ export function bodiesOf(run: Run): JsonObject[] {
   const bodies = run.result?.["bodies"];
   return Array.isArray(bodies) ? (bodies as JsonObject[]) : [];
 }
+
+/** The greatest length of a vector that is given by the histories of its components, and where in them it stands; of what
+ * never was anything: 0, at -1. */
+export function strongest(components: ArrayLike<number>[]): { size: number; at: number } {
+  let most = { size: 0, at: -1 };
+  for (let n = 0; n < (components[0]?.length ?? 0); ++n) {
+    const size = Math.hypot(...components.map((values) => values[n]!));
+    if (size > most.size) most = { size, at: n };
+  }
+  return most;
+}

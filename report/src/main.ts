@@ -1,7 +1,7 @@
 import "./style.css";
 import { paintSwatches } from "./colour";
 import { campaignPage, readCampaign } from "./campaign_page";
-import { readRuns, type JsonObject, type Run } from "./data";
+import { readRuns, strongest, type JsonObject, type Run } from "./data";
 import { h, section } from "./dom";
 import { figureCharts, pictureViews } from "./figures";
 import { fixed, unbroken } from "./format";
@@ -52,17 +52,13 @@ function makePlayer(runs: Run[]): Player {
         fastest = slice.fullScale;
         player.time = frame.time;
       }
-  let strongest = 0;
+  let hardest = 0;
   for (const [name, table] of runs[0]?.history ?? []) {
     if (!name.startsWith("body-")) continue;
-    const parts = table.columns.flatMap((c, n) => (/^force_[xyz]$/.test(c.name) ? [table.values[n]!] : []));
-    table.values[0]!.forEach((t, n) => {
-      const size = Math.hypot(...parts.map((p) => p[n]!));
-      if (size > strongest) {
-        strongest = size;
-        player.time = t;
-      }
-    });
+    const push = strongest(table.columns.flatMap((c, n) => (/^force_[xyz]$/.test(c.name) ? [table.values[n]!] : [])));
+    if (push.size <= hardest) continue;
+    hardest = push.size;
+    player.time = table.values[0]![push.at]!;
   }
   return player;
 }

@@ -51,11 +51,6 @@ std::string command_line_of(const std::string& command, const Case& c, const Run
   return line;
 }
 
-std::filesystem::path directory_of(const Case& c, const RunOptions& options) {
-  return options.out.empty() ? output::RunDirectory::default_path(c.path)
-                             : std::filesystem::path(options.out);
-}
-
 int exit_code_of(RunEnd end) {
   switch (end) {
     case RunEnd::decided:
@@ -86,7 +81,7 @@ Result until_a_signal(WatchedRun& watched, const RunOptions& options, const RunF
 /// `command`: that the user gave, "run" or "jet".
 int run_into_directory(const std::string& command, const Case& c, RunOptions options,
                        const RunOfCase& runner) {
-  const auto directory = directory_of(c, options);
+  const auto directory = output::directory_for(options.out, c.path, "run");
   if (options.resume)
     if (const auto result = finished_run(c, directory)) {
       if (!options.quiet) {
@@ -119,7 +114,7 @@ int run_into_directory(const std::string& command, const Case& c, RunOptions opt
 
 int sweep(const Case& c, const RunOptions& options) {
   const std::string typed = command_line_of("jet --sweep", c, options);
-  const auto directory = directory_of(c, options);
+  const auto directory = output::directory_for(options.out, c.path, "run");
   const SignalWatch signals;
   const auto result =
       sweep_jet(c, {.files = RunFiles{directory, options.force, false, typed, typed, options.overrides},

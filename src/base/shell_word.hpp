@@ -16,4 +16,7 @@ inline std::string shell_word(std::string_view word) {
   return quoted + "'";
 }
 
+/// The path of a file as a word of a command: one that begins with "-" would be taken for an option.
+inline std::string path_word(const std::string& path) { return path.starts_with('-') ? "./" + path : path; }
+
 }  // namespace ejecta

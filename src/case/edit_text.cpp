@@ -98,13 +98,19 @@ class EditedText {
   Node root_;
 };
 
-/// "body.0" -> "[[body]]", "grid.x" -> "[grid.x]".
-std::string header_of(const std::string& section) {
+/// "body.0" -> "[[body]]", "grid.x" -> "[grid.x]". A list grows by the element behind its last one: another
+/// number would not be that of the new element.
+std::string new_header(const EditedText& edited, const std::string& section) {
   const std::size_t dot = section.rfind('.');
-  const bool element =
-      dot != std::string::npos && section.find_first_not_of("0123456789", dot + 1) == std::string::npos;
-  if (element) return fmt::format("[[{}]]", section.substr(0, dot));
-  return fmt::format("[{}]", section);
+  if (dot == std::string::npos) return fmt::format("[{}]", section);
+  const std::string list = section.substr(0, dot);
+  const Node* before = edited.find(list);
+  const bool is_number = section.find_first_not_of("0123456789", dot + 1) == std::string::npos;
+  if (!is_number && !(before && before->is_list())) return fmt::format("[{}]", section);
+  const std::string next = fmt::format("{}.{}", list, before ? before->children.size() : 0);
+  if (section != next)
+    throw InputError(fmt::format("there is no {}\n  expected: {}, the next one", section, next));
+  return fmt::format("[[{}]]", list);
 }
 
 }  // namespace
@@ -125,7 +131,7 @@ std::string with_key(const std::string& text, const std::string& path, const std
   std::size_t at = edited.end_of_section(section);
   const std::string break_before = !text.empty() && !text.ends_with('\n') ? "\n" : "";
   if (at == std::string::npos)
-    return text + break_before + (text.empty() ? "" : "\n") + header_of(section) + "\n" + line;
+    return text + break_before + (text.empty() ? "" : "\n") + new_header(edited, section) + "\n" + line;
   return text.substr(0, at) + (at == text.size() ? break_before : "") + line + text.substr(at);
 }
 

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "base/error.hpp"
+#include "base/shell_word.hpp"
 #include "case/case_text.hpp"
 #include "case/extends.hpp"
 #include "case/extent.hpp"
@@ -150,7 +151,7 @@ Case resolve_case(const Node& root, const std::string& name, std::vector<Problem
 std::string folder_of(const Case& c) { return std::filesystem::path(c.path).parent_path().string(); }
 
 std::string beside_case(const Case& c, const std::string& file) {
-  return (std::filesystem::path(c.path).parent_path() / file).string();
+  return path_word((std::filesystem::path(c.path).parent_path() / file).string());
 }
 
 namespace {
@@ -217,7 +218,7 @@ std::vector<std::string> files_of(const Case& c) {
 
 Case load_case(const std::string& path, const std::vector<std::string>& overrides,
                std::vector<Problem>* warnings, const FurtherChecks& further) {
-  return parse_case(read_case_text(path), path, overrides, warnings, further);
+  return parse_case(read_case_text(path), path_word(path), overrides, warnings, further);
 }
 
 }  // namespace ejecta

@@ -61,7 +61,11 @@ std::vector<Problem> problems_of(const InputError& refusal) {
 
 std::string render(const Problem& p) {
   std::string text;
-  if (p.place.source) text += fmt::format("{}:{}: ", p.place.source->name, p.place.line_number());
+  if (p.place.source) {
+    const Source& s = *p.place.source;
+    const bool has_lines = !s.name.starts_with("--set ");  // else it is a word of the command line
+    text += has_lines ? fmt::format("{}:{}: ", s.name, p.place.line_number()) : s.name + ": ";
+  }
   text += p.severity == Severity::error ? "error: " : "warning: ";
   if (!p.key.empty()) text += printable(p.key) + ": ";
   text += printable(p.what) + "\n";

@@ -116,4 +116,11 @@ std::string csv_text(const ResultsTable& table) {
   return text;
 }
 
+void write_results(std::span<const fs::path> runs, const fs::path& file) {
+  if (file.extension() == ".xlsx") return write_workbook(runs, file);
+  if (file.extension() == ".csv") return write_file(file, csv_text(results_table(runs)));
+  throw InputError(fmt::format("\"{}\" is no table", file.string()),
+                   {.expected = "a name that ends with .csv or .xlsx", .example = "results.xlsx"});
+}
+
 }  // namespace ejecta::output

@@ -25,4 +25,7 @@ std::string csv_text(const ResultsTable& table);
 /// built without libxlsxwriter.
 void write_workbook(std::span<const std::filesystem::path> runs, const std::filesystem::path& file);
 
+/// The one or the other, as the name of the file ends. Throws InputError where it ends with neither.
+void write_results(std::span<const std::filesystem::path> runs, const std::filesystem::path& file);
+
 }  // namespace ejecta::output

@@ -7,6 +7,7 @@
 #include <system_error>
 
 #include "base/error.hpp"
+#include "base/shell_word.hpp"
 #include "output/output_file.hpp"
 
 namespace fs = std::filesystem;
@@ -40,7 +41,9 @@ void check_finite(const nlohmann::ordered_json& value, const std::string& key) {
 
 }  // namespace
 
-fs::path RunDirectory::default_path(const fs::path& case_path) { return case_path.stem().string() + ".run"; }
+fs::path directory_for(const std::string& out, const fs::path& case_path, const std::string& kind) {
+  return path_word(out.empty() ? case_path.stem().string() + "." + kind : out);
+}
 
 void RunDirectory::require_creatable(const fs::path& path, bool force) {
   std::error_code failed;

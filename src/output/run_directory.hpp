@@ -25,11 +25,14 @@ nlohmann::ordered_json make_manifest(const Provenance& p);
 /// The lines that start a history file.
 std::vector<std::string> provenance_lines(const Provenance& p);
 
+/// Where a command leaves its files: `out` if that is given, else CASE.KIND in the working directory, for
+/// "cases/x.toml" and "run": "x.run". It can be a word of another command.
+std::filesystem::path directory_for(const std::string& out, const std::filesystem::path& case_path,
+                                    const std::string& kind);
+
 /// The directory of one run. Its files are described in docs/files.md.
 class RunDirectory {
  public:
-  /// CASE.run beside the working directory, for "cases/x.toml": "x.run".
-  static std::filesystem::path default_path(const std::filesystem::path& case_path);
   /// Makes an empty run directory. Throws InputError when `path` holds a run already and `force` is not set,
   /// when it holds anything that is not a run, or when it cannot be made or written. With `force` a finished
   /// run is put aside in earlier/, until forget_earlier(); of an unfinished one its files are removed.

@@ -5,10 +5,13 @@
 
 #include <algorithm>
 #include <fstream>
+#include <utility>
 
 #include "base/error.hpp"
 #include "base/parallel.hpp"
 #include "base/sha256.hpp"
+#include "base/shell_word.hpp"
+#include "base/told.hpp"
 #include "case/load.hpp"
 #include "output/output_file.hpp"
 #include "study/study.hpp"
@@ -18,8 +21,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 namespace fs = std::filesystem;
-
-constexpr int kMostAtOnce = 64;
 
 /// The names of jobs of a case: "flat.run", "flat-2.run", ...
 std::string job_name(const std::string& case_name, const std::string& kind, int number) {
@@ -150,8 +151,8 @@ Json JobList::all(const Folder::Content& content, bool ended_too) {
 Json JobList::settings() { return {{"at_once", queue_.read().at_once}}; }
 
 void JobList::set_at_once(int count) {
-  if (count < 1 || count > kMostAtOnce)
-    throw InputError(fmt::format("{} at once cannot be\n  expected: 1 to {}", count, kMostAtOnce));
+  if (count < 1 || count > Queue::kMostAtOnce)
+    throw InputError(fmt::format("{} at once cannot be\n  expected: 1 to {}", count, Queue::kMostAtOnce));
   {
     const std::lock_guard lock(one_at_a_time_);
     queue_.change([&](Queue::State& q, const Queue::Keep&) { q.at_once = count; });
@@ -164,7 +165,7 @@ std::string JobList::start(const std::string& case_name, const std::string& kind
     throw InputError(fmt::format("\"{}\" cannot be started", kind));
   const fs::path file = folder_.inside(case_name);
   if (!fs::is_regular_file(file)) throw InputError(fmt::format("there is no case {}", case_name));
-  Job job{.kind = kind, .case_name = case_name, .digest = digest_of_case(file)};
+  Job job{.name = "", .kind = kind, .case_name = case_name, .digest = digest_of_case(file)};
   {
     const std::lock_guard lock(one_at_a_time_);
     queue_.change([&](Queue::State& q, const Queue::Keep&) {
@@ -225,10 +226,10 @@ void JobList::stop(const std::string& name) {
   if (kind != "run") return;
   const Json& progress = files_.read(directory / "progress.json");  // started at a terminal
   if (!progress.is_object()) return;                                // it has not begun
-  const pid_t process = progress.value("process", 0);
-  if (process <= 0)
+  const auto process = progress.value("process", std::int64_t{0});
+  if (process <= 0 || !std::in_range<pid_t>(process))
     throw InputError(fmt::format("{} runs inside another program, such as a notebook: stop it there", name));
-  ::kill(process, SIGTERM);
+  ::kill(static_cast<pid_t>(process), SIGTERM);
 }
 
 void JobList::remove(const std::string& name) {
@@ -251,9 +252,10 @@ void JobList::remove(const std::string& name) {
 }
 
 void JobList::launch(const Job& job, int side_by_side) {
-  std::vector<std::string> words{job.kind, job.case_name, "--out", job.name};
-  if (job.resumes && job.kind == "run")
-    words = {"run", (fs::path(job.name) / "case.toml").string(), "--out", job.name, "--resume"};
+  const bool resumes = job.resumes && job.kind == "run";  // the others do so by themselves
+  const std::string file = resumes ? (fs::path(job.name) / "case.toml").string() : job.case_name;
+  std::vector<std::string> words{job.kind, path_word(file), "--out", path_word(job.name)};
+  if (resumes) words.push_back("--resume");
   if (side_by_side > 1 && job.kind != "campaign")  // they share the cores
     words.push_back(fmt::format("--{}={}", job.kind == "run" || job.kind == "sort" ? "threads" : "at-once",
                                 std::max(1, core_count() / side_by_side)));
@@ -263,7 +265,9 @@ void JobList::launch(const Job& job, int side_by_side) {
       throw InputError(fmt::format("{}, or what it reads, was changed while {} waited: start it again",
                                    job.case_name, job.name));
     processes_.start(words, folder_.path(), log);
-  } catch (const std::exception& e) {  // said where a run says what it has met
+  } catch (const InputError& e) {  // said where a run says what it has met
+    std::ofstream(log, std::ios::app) << "error: " << told(e) << "\n";
+  } catch (const std::exception& e) {
     std::ofstream(log, std::ios::app) << "error: " << e.what() << "\n";
   }
 }

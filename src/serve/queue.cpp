@@ -51,10 +51,12 @@ Queue::State Queue::read() const {
   if (!std::filesystem::exists(file(), none)) return {};
   try {
     const Json json = Json::parse(output::read_file(file()));
-    return {json.at("at_once"), queued_jobs(json.at("waiting")), queued_jobs(json.at("started"))};
-  } catch (const Json::exception&) {
-    throw Error(fmt::format("{} is damaged: remove it, and start again what waited", file().string()));
+    const Json& at_once = json.at("at_once");
+    if (at_once.is_number_integer() && at_once >= 1 && at_once <= kMostAtOnce)
+      return {at_once, queued_jobs(json.at("waiting")), queued_jobs(json.at("started"))};
+  } catch (const Json::exception&) {  // it is told below
   }
+  throw Error(fmt::format("{} is damaged: remove it, and start again what waited", file().string()));
 }
 
 void Queue::change(const std::function<void(State&, const Keep&)>& act) const {

@@ -22,6 +22,7 @@ class Queue {
  public:
   explicit Queue(const std::filesystem::path& folder) : place_(folder / ".ejecta") {}
 
+  static constexpr int kMostAtOnce = 64;
   struct State {
     int at_once = 1;
     std::vector<Job> waiting;  ///< the first is the next

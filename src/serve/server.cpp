@@ -4,6 +4,7 @@
 #include <httplib.h>
 
 #include <atomic>
+#include <charconv>
 #include <chrono>
 #include <condition_variable>
 #include <mutex>
@@ -12,6 +13,7 @@
 
 #include "base/error.hpp"
 #include "base/sha256.hpp"
+#include "base/told.hpp"
 #include "case/edit_text.hpp"
 #include "case/template.hpp"
 #include "output/output_file.hpp"
@@ -60,6 +62,17 @@ std::string text_of(const Json& body, const char* name) {
   return body[name];
 }
 
+/// A whole number. One that is too large for an `int` is refused, not cut to what fits.
+int number_of(const Json& body, const char* name) {
+  if (!body.is_object() || !body.contains(name) || !body[name].is_number_integer())
+    throw InputError(fmt::format("the request has no whole number \"{}\"", name));
+  const std::string digits = body[name].dump();
+  int number = 0;
+  if (std::from_chars(digits.data(), digits.data() + digits.size(), number).ec != std::errc())
+    throw InputError(fmt::format("{} cannot be the number \"{}\"", digits, name));
+  return number;
+}
+
 }  // namespace
 
 struct Workbench::Parts {
@@ -75,7 +88,8 @@ struct Workbench::Parts {
   std::mutex mutex;
   std::condition_variable changed, wanted;
   Changes changes;
-  bool ends = false, look_now = false;
+  bool ends = false;
+  bool look_now = true;  ///< before anybody asks: results of a thousand runs take a moment to read
   std::thread looks, serves;
 
   explicit Parts(const ServeOptions& o)
@@ -142,11 +156,11 @@ struct Workbench::Parts {
       try {
         std::rethrow_exception(p);
       } catch (const Conflict& e) {
-        refuse(response, 409, e.what());
+        refuse(response, 409, told(e));
       } catch (const InputError& e) {
-        refuse(response, 400, e.what());
+        refuse(response, 400, told(e));
       } catch (const nlohmann::json::exception&) {
-        refuse(response, 400, "the request is no JSON");
+        refuse(response, 400, "the request is not of the form that the page sends (JSON)");
       } catch (const std::exception& e) {
         refuse(response, 500, e.what());
       }
@@ -329,9 +343,7 @@ struct Workbench::Parts {
       return Json::object();
     });
     post_job("/api/at-once", [this](const Json& body) {
-      if (!body.is_object() || !body.contains("count") || !body["count"].is_number_integer())
-        throw InputError("the request has no \"count\"");
-      jobs.set_at_once(body["count"].get<int>());
+      jobs.set_at_once(number_of(body, "count"));
       return Json::object();
     });
     server.Get("/api/events", [this](const Request&, Response& response) {
@@ -388,18 +400,19 @@ struct Workbench::Parts {
     while (!ends) {
       wanted.wait_for(lock, kBetweenLooks, [&] { return ends || look_now; });
       const auto begins = Clock::now();
-      const bool all = look_now || begins >= all_due;
+      const bool asked = look_now, all = asked || begins >= all_due;
       look_now = false;
       lock.unlock();
       Json now, rest;
       try {
         jobs.advance();
-        if (streams > 0) {
+        if (streams > 0 || asked) {
           if (all) content = folder.content();
           now = jobs.all(content, all);
           if (all) all_due = Clock::now() + kShare * (Clock::now() - begins);
           rest = jobs.settings();
           rest["trouble"] = "";
+          rest["folder"] = folder.path().string();
           rest["cases"] = content.cases;
         }
       } catch (const std::exception& e) {  // the folder cannot be read just now, or its queue

@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "base/error.hpp"
+#include "base/shell_word.hpp"
 #include "validation/validation.hpp"
 
 namespace ejecta {
@@ -92,7 +93,7 @@ path shipped_cases() {
 }
 
 std::string case_file(const std::string& given) {
-  if (std::filesystem::exists(given) || path(given).is_absolute()) return given;
+  if (std::filesystem::exists(given) || path(given).is_absolute()) return path_word(given);
   for (const path& name : {path(given), path(given + ".toml")})
     for (const path& folder : {shipped_cases() / "cases", shipped_cases()})
       if (std::filesystem::is_regular_file(folder / name)) return (folder / name).string();

@@ -9,6 +9,7 @@
 #include "case/write.hpp"
 #include "output/output_file.hpp"
 #include "output/report.hpp"
+#include "output/run_directory.hpp"
 #include "simulation/sorter_run.hpp"
 #include "study/study.hpp"
 
@@ -48,7 +49,7 @@ SortEnd compute_sorter(const Case& c, const SortOptions& o, const Attendance& wh
     throw InputError(fmt::format("{} has no [sorter]", c.path),
                      {.expected = "the machine", .example = "[sorter] throughput = \"10 t/h\""});
   if (o.threads > 0) set_thread_count(o.threads);
-  const fs::path path = o.out.empty() ? fs::path(c.path).stem().string() + ".sort" : o.out;
+  const fs::path path = output::directory_for(o.out, c.path, "sort");
   const SorterDirectory directory(path, study_header("sort", c).at("input_sha256"), o.force);
   SorterState state = directory.read(c.classes.size());
   const auto source = make_jet_source(c, who.note);

@@ -10,6 +10,7 @@
 #include "case/node_path.hpp"
 #include "output/output_file.hpp"
 #include "output/report.hpp"
+#include "output/run_directory.hpp"
 #include "simulation/body_checks.hpp"
 #include "simulation/forecast.hpp"
 #include "study/local.hpp"
@@ -72,7 +73,7 @@ CampaignHands hands_for(const std::filesystem::path& program, const Attendance& 
 }  // namespace
 
 std::filesystem::path study_directory(const StudyOptions& o, const char* kind) {
-  return o.out.empty() ? std::filesystem::path(o.path).stem().string() + "." + kind : o.out;
+  return output::directory_for(o.out, o.path, kind);
 }
 
 void collect_study(const TaskStore& store) {
@@ -185,7 +186,7 @@ int compute_campaign(const std::string& path, CampaignOptions o, const std::file
     throw InputError(fmt::format("{} has no [campaign]", path),
                      {.expected = "the cases that belong to it",
                       .example = "[[campaign.part]] kind = \"run\", case = \"10mm-cubic.toml\""});
-  if (o.out.empty()) o.out = std::filesystem::path(path).stem().string() + ".campaign";
+  o.out = output::directory_for(o.out, path, "campaign").string();
   return run_campaign(c, o, hands_for(program, who));
 }
 

@@ -115,6 +115,36 @@ class CommandLine(unittest.TestCase):
         self.assertIn("is a file", ejecta("report", self.case()).stderr)
         self.assertEqual(ejecta("run", self.case(), "--threads", "0").returncode, 2)
 
+    def test_what_people_type_first(self):
+        self.assertEqual(ejecta("help").stdout, ejecta("--help").stdout)
+        self.assertEqual(ejecta("help", "run").stdout, ejecta("run", "--help").stdout)
+        self.assertEqual(ejecta("-v").stdout, ejecta("--version").stdout)
+        self.assertEqual(ejecta("help", "nothing").returncode, 2)
+        self.assertEqual(ejecta("check", self.case(), "--threads", "1").returncode, 0)
+        refused = ejecta("check", self.case(), "--set", "body.0.diametr=1").stderr
+        self.assertIn("--set body.0.diametr=1: error:", refused, "it is no line of a file")
+        for word in ("margin", "clearance", "ejected", "purity"):
+            self.assertRegex(ejecta("explain", word).stdout, rf"(?m)^Words of results(.|\n)*{word}")
+
+    def test_files_whose_names_begin_with_a_dash(self):
+        """Behind "--", or as ./-x; what such a run leaves and says can be used as it stands."""
+        name = pathlib.Path(self.case(BOUNCE)).rename("-ball.toml").name
+        refused = ejecta("run", name)
+        self.assertEqual(refused.returncode, 2)
+        self.assertIn("example:  ./-ball.toml", refused.stderr)
+        self.assertEqual(ejecta("run", "-q", "--", name).returncode, 0)
+        command = json.loads(pathlib.Path("-ball.run/manifest.json").read_text())["command"]
+        self.assertEqual(command, "ejecta run ./-ball.toml")
+        self.assertEqual(ejecta(*command.split()[1:], "-q", "--force").returncode, 0)
+        study = '[study]\nquantities = ["/bodies/0/peak_speed_m_s"]\n[[study.vary]]\nkey = "run.end_time"\nvalues = ["1 ms", "2 ms"]\n'
+        pathlib.Path("-many.toml").write_text(BOUNCE + study)
+        pathlib.Path("-all.toml").write_text('[campaign]\n[[campaign.part]]\nkind = "study"\ncase = "-many.toml"\n')
+        for command in ("study", "campaign"):
+            done = ejecta(command, "-q", "--", "-many.toml" if command == "study" else "-all.toml")
+            self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(len(json.loads(pathlib.Path("-many.study/result.json").read_text())["runs"]), 2)
+        self.assertTrue(json.loads(pathlib.Path("-all.campaign/result.json").read_text())["parts"][0]["done"])
+
     def test_check_says_where_a_prescribed_body_goes(self):
         swing = BOUNCE.replace("1 ms", "100 ms") + (
             'motion = "prescribed"\nvelocity = ["= 0.2 * cos(100 * t)", "0 m/s", "0 m/s"]\n'

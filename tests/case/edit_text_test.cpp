@@ -74,6 +74,12 @@ TEST(EditText, RefusesWhatIsNoKey) {
   EXPECT_THROW(with_key("a = { b = 1 }\n", "a.c", "1"), InputError);
 }
 
+TEST(EditText, AListGrowsByItsNextElementOnly) {
+  for (const char* path : {"body.3.name", "body.4294967296.name", "body.99999999999999999999.name",
+                           "body.-1.name", "wall.1.name"})
+    EXPECT_THROW(with_key(kWritten, path, "\"c\""), InputError) << path;
+}
+
 TEST(EditText, TheCaseReadsWhatWasSet) {
   for (const Word& kind : template_kinds()) {
     const std::string text = case_template(kind.name);

@@ -26,7 +26,9 @@ std::string message_of(const auto& action) {
 }  // namespace
 
 TEST(RunDirectory, NamedAfterTheCase) {
-  EXPECT_EQ(RunDirectory::default_path("cases/paper/10mm-cubic.toml"), "10mm-cubic.run");
+  EXPECT_EQ(directory_for("", "cases/paper/10mm-cubic.toml", "run"), "10mm-cubic.run");
+  EXPECT_EQ(directory_for("", "./-cubic.toml", "study"), "./-cubic.study") << "a word of run-task";
+  EXPECT_EQ(directory_for("-x", "cubic.toml", "run"), "./-x");
 }
 
 TEST(RunDirectory, IsNotOverwrittenWithoutForce) {

@@ -393,6 +393,33 @@ except KeyboardInterrupt:
         self.assertLess(frame["z"].iloc[-1], 0.02)
 
 
+class HandedOn(unittest.TestCase):
+    """What the commands report, table and paraview write."""
+
+    def test_the_same_files(self):
+        runs = [ejecta.run(short(end), out=place(f"{end}.run")) for end in ("0.2 ms", "0.4 ms")]
+        directories = [str(run.directory) for run in runs]
+        for name, act in (("report", ejecta.report), ("table", ejecta.table)):
+            for ending in ("html",) if name == "report" else ("csv",):
+                mine, theirs = scratch / f"mine.{ending}", scratch / f"theirs.{ending}"
+                self.assertEqual(act(runs[0], directories[1], out=mine), mine)
+                subprocess.run([program, name, *directories, "--out", theirs], check=True, capture_output=True)
+                self.assertEqual(mine.read_text(), theirs.read_text())
+        self.assertEqual(ejecta.report(runs[0].run), runs[0].directory / "report.html")
+        with self.assertRaisesRegex(ejecta.InputError, r"is no table\n  expected: .*\.xlsx"):
+            ejecta.table(runs[0], out=scratch / "results.txt")
+        with self.assertRaisesRegex(ejecta.InputError, "fields"):
+            ejecta.paraview(ejecta.run(BALL, out=place("no-air.run")))
+        with self.assertRaisesRegex(ValueError, "have written files"):
+            ejecta.report(ejecta.run(BALL))
+
+    def test_a_view(self):
+        case = short("0.2 ms")
+        case["output.fields_interval"] = "0.1 ms"
+        file = ejecta.paraview(ejecta.run(case, out=place("fields.run")))
+        compile(file.read_text(), str(file), "exec")
+
+
 class Jobs(unittest.TestCase):
     def test_submit_to_its_end(self):
         directory = place("job.run")
@@ -431,6 +458,29 @@ class Jobs(unittest.TestCase):
         directory = place("dict-job.run")
         result = ejecta.submit(BALL, out=directory).wait()
         self.assertEqual(physics(result.quantities), physics(ejecta.run(BALL).quantities))
+
+    def test_names_that_begin_with_a_dash(self):
+        folder = place("dashes")
+        folder.mkdir(parents=True)
+        self.addCleanup(os.chdir, os.getcwd())
+        os.chdir(folder)
+        ejecta.Case(BALL).save("-ball.toml")
+        for case in ("-ball.toml", BALL):
+            self.assertEqual(ejecta.submit(case, out="-ball.run", overwrite=True).wait().end, "decided")
+        ejecta.Case(dict(BALL, study={"quantities": ["/bodies/0/peak_speed_m_s"],
+                                      "vary": [{"key": "run.end_time", "values": [0.001, 0.002]}]})).save("-many.toml")
+        self.assertEqual(len(ejecta.study("-many.toml").runs), 2)
+        self.assertTrue(Path("-many.study/result.json").exists())
+
+    def test_numbers_that_cannot_be(self):
+        for options in ({"at_once": -1}, {"at_once": 2**32 + 1}):
+            with self.assertRaises((ValueError, ejecta.InputError)):
+                ejecta.study(BALL, out=place("none.study"), **options)
+        for threads in (-1, 2**32 + 1):
+            for act in (ejecta.run, ejecta.submit, ejecta.sort):
+                with self.assertRaises((ValueError, TypeError, ejecta.InputError), msg=f"{act} {threads}"):
+                    act(BALL, out=place("none.run"), threads=threads)
+                self.assertFalse((scratch / "none.run").exists())
 
     def test_study(self):
         case = ejecta.Case(dict(BALL, study={"quantities": ["/bodies/0/final_position_m/2"], "keep_runs": False},

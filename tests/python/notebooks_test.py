@@ -30,7 +30,7 @@ def cell_by_cell(notebook):
 
 os.environ["MPLBACKEND"] = "Agg"
 notebooks = sorted(Path(sys.argv[1]).resolve().glob("*.ipynb"))
-assert len(notebooks) == 3, notebooks
+assert len(notebooks) == 4, notebooks
 for notebook in notebooks:
     print(notebook.name, "by Jupyter" if nbformat else "cell by cell", flush=True)
     (by_jupyter if nbformat else cell_by_cell)(notebook)

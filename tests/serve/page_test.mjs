@@ -72,6 +72,25 @@ function rock([x, y, z]) {
   return `solid rock\n${facets.join("")}endsolid rock\n`;
 }
 
+/** A ball of 18 x 13 x 9 with bumps. */
+function lump() {
+  const rings = 6, around = 8, points = [[0, 0, 4.5]];
+  for (let r = 1; r < rings; ++r)
+    for (let a = 0; a < around; ++a) {
+      const [polar, turn, bump] = [(Math.PI * r) / rings, (2 * Math.PI * a) / around, 1 + 0.07 * Math.sin(5 * r * a + r + 3 * a)];
+      points.push([9 * bump * Math.sin(polar) * Math.cos(turn), 6.5 * bump * Math.sin(polar) * Math.sin(turn), 4.5 * bump * Math.cos(polar)]);
+    }
+  points.push([0, 0, -4.5]);
+  const at = (r, a) => (r === 0 ? 0 : r === rings ? points.length - 1 : 1 + (r - 1) * around + (a % around));
+  const facets = [];
+  for (let r = 0; r < rings; ++r)
+    for (let a = 0; a < around; ++a) {
+      if (r > 0) facets.push([at(r, a), at(r + 1, a), at(r, a + 1)]);
+      if (r < rings - 1) facets.push([at(r, a + 1), at(r + 1, a), at(r + 1, a + 1)]);
+    }
+  return `solid lump\n${facets.map((f) => `facet normal 0 0 0\nouter loop\n${f.map((n) => `vertex ${points[n].join(" ")}\n`).join("")}endloop\nendfacet\n`).join("")}endsolid lump\n`;
+}
+
 async function serve(port) {
   const server = spawn(program, ["serve", scratch, ...(port ? ["--port", String(port)] : [])], { stdio: ["ignore", "pipe", "inherit"] });
   const [address] = await new Promise((resolve) => createInterface(server.stdout).once("line", (line) => resolve([line])));
@@ -222,8 +241,28 @@ try {
     assert.ok(await there(), "the keyboard reaches it");
   };
   await tabTo(stop);
+
+  // The focus stays where it is while the list goes on: the row of the run is another one every second.
+  const focused = () => again.evaluate(() => document.activeElement.getAttribute("aria-label") ?? document.activeElement.tagName);
+  const renewed = async (name) => {
+    await row(again, name).locator("td.progress").evaluate((cell) => (cell.dataset.old = ""));
+    await again.waitForFunction((of) => !document.querySelector(`tr[data-job="${of}"] td.progress`).hasAttribute("data-old"), name, { timeout: 60000 });
+  };
+  await renewed("slow.run");
+  assert.equal(await focused(), "Stop slow.run");
+  await row(again, "small.run").getByRole("link", { name: "Report" }).focus(); // of a row that others pass
+  writeFileSync(path.join(scratch, "again.toml"), readFileSync(path.join(scratch, "small.toml")));
+  await again.evaluate(() => fetch("/api/start", { method: "POST", body: JSON.stringify({ case: "again.toml", kind: "run" }) }));
+  await again.waitForSelector(listed("again.run", "waiting"));
+  assert.equal(await focused(), "Report of small.run");
+  await again.getByRole("button", { name: "Cancel again.run" }).focus();
+  await again.keyboard.press("Enter");
+  await again.waitForSelector(listed("again.run"), { state: "detached" });
+  assert.notEqual(await focused(), "BODY", "what has gone leaves the focus to its neighbour");
+  await stop.focus();
   await again.keyboard.press("Enter");
   await again.waitForSelector(listed("slow.run", "stopped"), { timeout: 60000 });
+  assert.match(await focused(), /slow\.run$/);
   assert.ok(await again.getByRole("button", { name: "Resume slow.run" }).isVisible());
 
   // By the keyboard alone: a first case of somebody who has none, with the rock that he has as a file.
@@ -252,8 +291,28 @@ try {
   await again.locator("#shape-0-unit").selectOption("in");
   await again.waitForFunction(() => /scale = 0\.0254/.test(document.querySelector("#text").value));
   await again.locator("#shape-0-unit").selectOption("mm");
+  await again.waitForFunction(() => document.querySelector(".shapes .size").textContent.includes("20.0"));
+  assert.match(await mine(), /^name = "rock"/m, "it is the cube of the template no more");
+  await again.locator("#shape-0-longest").fill("30");
+  await again.locator("#shape-0-longest").press("Tab");
+  await again.waitForFunction(() => /scale = 0\.0015/.test(document.querySelector("#text").value));
+  await again.locator("#shape-0-unit").selectOption("mm");
+  await again.waitForFunction(() => /scale = 0\.001\b/.test(document.querySelector("#text").value));
+  assert.ok(await again.locator('[id="key-body.0.diameter"]').isHidden(), "what another shape needs");
+
+  // A rock whose surface the grid cannot see as it is: its dents are filled, and that is said.
+  const [finer] = await Promise.all([again.waitForEvent("filechooser"), again.locator("#shape").click()]);
+  await finer.setFiles({ name: "lump.stl", mimeType: "model/stl", buffer: Buffer.from(lump()) });
+  await again.waitForFunction(() => /are filled/.test(document.querySelector(".shapes .note").textContent) && !document.querySelector(".problems .error"));
+  assert.match(await mine(), /^title = "lump"[^]*^name = "lump"/m);
+  await again.locator("#shape-0-filled").fill("");
+  await again.locator("#shape-0-filled").press("Tab");
+  await again.waitForSelector(".problems .error");
+  await again.locator("#shape-0-filled").fill("1.5");
+  await again.locator("#shape-0-filled").press("Tab");
+  await again.waitForFunction(() => !document.querySelector(".problems .error"));
   await again.locator("#save").click(); // before the page has heard that the text is changed
-  await again.waitForFunction(() => document.querySelector("#save").disabled);
+  await again.waitForFunction(() => document.querySelector("#save").ariaDisabled === "true");
   assert.match(readFileSync(path.join(scratch, "mine.toml"), "utf8"), /^scale = 0\.001/m);
 
   // A study: its curves come with its runs.
@@ -308,11 +367,18 @@ try {
     for (const name of ["manifest.json", "result.json", "progress.json"]) cpSync(path.join(scratch, "small.run", name), path.join(copy, name));
   }
   const long = await open();
-  const begun = Date.now();
-  await long.reload();
-  await long.waitForFunction(() => document.querySelectorAll("tr[data-job]").length > 1000);
-  const took = Date.now() - begun;
-  say(`1000 runs shown in ${took} ms`);
+  // By the clock of the page, until the frame after the one that has them all; of several, as the machine has other work.
+  await long.addInitScript(() => {
+    const look = () => requestAnimationFrame(document.querySelectorAll("tr[data-job]").length > 1000 ? () => (window.listed = performance.now()) : look);
+    look();
+  });
+  const lists = [];
+  for (let n = 0; n < 4; ++n) {
+    await long.reload();
+    lists.push(await (await long.waitForFunction(() => window.listed)).jsonValue());
+  }
+  const took = Math.min(...lists);
+  say(`1000 runs shown in ${lists.map(Math.round).join(", ")} ms`);
   if (process.env.EJECTA_TIMED) assert.ok(took < 1000);
   await long.getByLabel("Show").fill("copy-99");
   assert.equal(await long.locator("tr[data-job]:visible").count(), 11);

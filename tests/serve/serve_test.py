@@ -223,6 +223,13 @@ class Cases(ServerCase):
         self.assertNotIn("diameter", back["text"])
         self.assertEqual(self.server.post("/api/set", text="[run", key="run.title", value='"x"')[0], 400)
 
+    def test_numbers_in_the_names_of_keys(self):
+        for key in ("body.1.name", "body.0.name"):
+            self.assertEqual(self.server.post("/api/set", text=BALL, key=key, value='"x"')[0], 200, key)
+        for key in ("body.2.name", f"body.{2**32}.name", f"body.{2**64}.name", "body.-1.name"):
+            status, answer = self.server.post("/api/set", text=BALL, key=key, value='"x"')
+            self.assertEqual(status, 400, (key, answer))
+
     def test_new(self):
         self.assertEqual(self.server.post("/api/new", name="mine.toml")[0], 200)
         self.assertEqual(self.server.get("/api/cases")["cases"], ["ball.toml", "mine.toml"])
@@ -318,6 +325,23 @@ class Runs(ServerCase):
         self.assertTrue((status, book[:2]) == (200, b"PK") or (status == 400 and b"built without" in book))
         for query in ("", "?run=../x", "?run=ball.toml"):
             self.assertEqual(self.server.ask("GET", "/runs/results.csv" + query)[0], 400)
+
+    def test_names_that_begin_with_a_dash(self):
+        folder = self.folder / "-rocks"
+        folder.mkdir()
+        (folder / "-ball.toml").write_text(BALL)
+        (self.folder / "-f.toml").write_text(STUDY)
+        for case, kind in (("-rocks/-ball.toml", "run"), ("-f.toml", "run"), ("-f.toml", "study")):
+            job = self.server.start(case, kind)[1]["job"]
+            self.assertEqual(job, case.replace("toml", kind))
+            done = self.server.wait(job, ("done", "failed"))
+            self.assertEqual((done["state"], done["case"]), ("done", case), done)
+        (self.folder / "-slow.toml").write_text((self.folder / "slow.toml").read_text())
+        self.server.start("-slow.toml")
+        for call, state in (("stop", "running"), ("resume", "stopped"), ("stop", "running")):
+            self.server.wait("-slow.run", (state,))
+            self.assertEqual(self.server.post(f"/api/{call}", job="-slow.run")[0], 200)
+        self.assertEqual(self.server.wait("-slow.run", ("stopped", "failed"))["state"], "stopped")
 
     def test_many_clicks_are_one_run(self):
         answers = []
@@ -460,8 +484,11 @@ class Queue(ServerCase):
 
     def test_so_many_at_once(self):
         self.assertEqual(self.server.post("/api/at-once", count=2)[0], 200)
-        for count in (0, -1, 1000, "2", 1.5, None):
-            self.assertEqual(self.server.post("/api/at-once", count=count)[0], 400, count)
+        for count in (0, -1, 1000, 2**32 + 1, 2**63, 2**64 + 1, -2**32 + 1, 10**400, "2", 1.5, True, None):
+            status, answer = self.server.post("/api/at-once", count=count)
+            self.assertEqual(status, 400, count)
+            self.assertRegex(answer["error"], "at once cannot be|count|form that the page sends")
+        self.assertEqual(json.loads((self.folder / ".ejecta" / "queue.json").read_text())["at_once"], 2)
         for name in "abc":
             self.server.start(f"{name}.toml")
         self.server.wait("b.run", ("running",))
@@ -538,9 +565,10 @@ class Queue(ServerCase):
 
     def test_a_damaged_queue_is_said_to_be_damaged(self):
         (self.folder / ".ejecta").mkdir()
-        (self.folder / ".ejecta" / "queue.json").write_text("{")
-        status, answer = self.server.start("a.toml")
-        self.assertEqual((status, "damaged" in answer["error"]), (500, True))
+        for text in ("{", *(json.dumps({"at_once": n, "waiting": [], "started": []}) for n in (0, 2**32 + 1, "2"))):
+            (self.folder / ".ejecta" / "queue.json").write_text(text)
+            status, answer = self.server.start("a.toml")
+            self.assertEqual((status, "damaged" in answer["error"]), (500, True), text)
 
 
 class Others(ServerCase):

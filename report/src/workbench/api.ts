@@ -89,6 +89,7 @@ export interface Job {
 
 /** The folder as it is. */
 export interface FolderState {
+  folder: string;
   jobs: Job[];
   cases: string[];
   at_once: number;
@@ -166,7 +167,7 @@ interface Event extends Partial<FolderState> {
 /** Tells of the folder whenever it changes: by events, or by asking where those do not come. */
 export function watchFolder(show: (state: FolderState) => void, reachable: (yes: boolean) => void): void {
   const jobs = new Map<string, Job>();
-  const state: FolderState = { jobs: [], cases: [], at_once: 1, trouble: "" };
+  const state: FolderState = { folder: "", jobs: [], cases: [], at_once: 1, trouble: "" };
   const take = ({ jobs: changed, gone, all, ...rest }: Event): void => {
     if (all) jobs.clear();
     for (const name of gone) jobs.delete(name);
@@ -181,7 +182,7 @@ export function watchFolder(show: (state: FolderState) => void, reachable: (yes:
     events.onopen = () => reachable(true);
     events.onerror = () => {
       reachable(false);
-      Promise.all([api.jobs(), api.cases()]).then(([list, { cases }]) => take({ jobs: list, gone: [], all: true, cases }), () => undefined);
+      Promise.all([api.jobs(), api.cases()]).then(([list, { folder, cases }]) => take({ jobs: list, gone: [], all: true, folder, cases }), () => undefined);
       if (events.readyState === EventSource.CLOSED) {
         events.close();
         setTimeout(connect, 2000);

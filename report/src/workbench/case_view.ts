@@ -2,9 +2,10 @@
 
 import { h } from "../dom";
 import { duration, fixed, thousands } from "../format";
-import { api, type Judgement, type Kind, type Problem, type SchemaSection } from "./api";
+import { api, type Judgement, type Kind, type Problem, type SchemaSection, type Value } from "./api";
 import { drawingView } from "./drawing";
 import { Form } from "./form";
+import { renew } from "./renew";
 import { ShapePanel } from "./shape_panel";
 
 const PAUSE = 120; // ms without a key until the text is checked
@@ -31,6 +32,7 @@ export class CaseView {
   private timer = 0;
   private checking: AbortController | null = null;
   private errors = 0;
+  private starting = false;
   private judgement: Judgement | null = null;
   /** Changes of the form, one after the other: each works on the text that the last one left. */
   private edits: Promise<void> = Promise.resolve();
@@ -40,7 +42,7 @@ export class CaseView {
     this.form = new Form(schema, { set: (path, value) => this.change(path, value) });
     this.text.addEventListener("input", () => this.typed());
     this.text.addEventListener("scroll", () => (this.lines.scrollTop = this.text.scrollTop));
-    this.saveButton.addEventListener("click", () => void this.save());
+    this.saveButton.addEventListener("click", () => void (this.changed && this.save()));
     this.copyButton.addEventListener("click", () => {
       const copy = prompt("Name of the copy", name.split("/").at(-1)!.replace(/(-(\d+))?\.toml$/, (_all, _dash, n: string | undefined) => `-${Number(n ?? 1) + 1}.toml`));
       if (copy) this.save().then(() => api.copy(name, copy.endsWith(".toml") ? copy : `${copy}.toml`)).then((made) => copied(made.name), (error: Error) => this.say(error.message));
@@ -94,7 +96,7 @@ export class CaseView {
 
   private tellChanged(): void {
     this.say(this.changed ? "not saved" : "");
-    this.saveButton.disabled = !this.changed;
+    this.saveButton.ariaDisabled = this.changed ? null : "true"; // one that is disabled would lose the focus
   }
 
   private say(words: string): void {
@@ -117,8 +119,8 @@ export class CaseView {
     this.errors = judgement.problems.filter((p) => p.severity === "error").length;
     this.tellChanged();
     this.offer(judgement.commands ?? []);
-    this.lock(false);
-    this.problems.replaceChildren(...judgement.problems.slice(0, 20).map((p) => this.problem(p)));
+    for (const b of this.starts.querySelectorAll("button")) b.disabled = this.errors > 0;
+    renew(this.problems, ...judgement.problems.slice(0, 20).map((p) => this.problem(p)));
     const faulty = new Map(judgement.problems.map((p) => [p.line, p.severity]));
     const count = this.text.value.split("\n").length;
     this.lines.replaceChildren(...[...Array(count).keys()].map((n) => h("span", { class: faulty.get(n + 1) ?? "" }, String(n + 1))));
@@ -127,7 +129,7 @@ export class CaseView {
       this.shapes.show(judgement.values, judgement.check?.bodies ?? []);
     }
     this.summary.classList.toggle("stale", !judgement.check); // until the faults are mended: what it was before
-    if (judgement.check) this.summary.replaceChildren(...(judgement.drawing ? [drawingView(judgement.drawing)] : []), ...this.facts(judgement));
+    if (judgement.check) renew(this.summary, ...(judgement.drawing ? [drawingView(judgement.drawing)] : []), ...this.facts(judgement));
   }
 
   private problem(p: Problem): HTMLElement {
@@ -181,19 +183,17 @@ export class CaseView {
   private offer(commands: Kind[]): void {
     if (this.starts.dataset["of"] === commands.join()) return;
     this.starts.dataset["of"] = commands.join();
-    this.starts.replaceChildren(...commands.map((kind, n) => {
+    renew(this.starts, ...commands.map((kind, n) => {
       const b = h("button", { type: "button", class: n === 0 && "primary", "data-start": kind }, START[kind]);
       b.addEventListener("click", () => void this.start(kind));
       return b;
     }));
   }
 
-  private lock(busy: boolean): void {
-    for (const b of this.starts.querySelectorAll("button")) b.disabled = busy || this.errors > 0;
-  }
 
   private async start(kind: Kind): Promise<void> {
-    this.lock(true); // one click, one run
+    if (this.starting) return; // one click, one run
+    this.starting = true;
     try {
       await this.edits;
       if (this.changed && !(await this.save())) return;
@@ -201,8 +201,40 @@ export class CaseView {
     } catch (error) {
       this.say((error as Error).message);
     } finally {
-      this.lock(false);
+      this.starting = false;
     }
+  }
+
+  private get values(): Record<string, Value> {
+    return this.judgement?.values ?? {};
+  }
+
+  /** What was the 10 mm cube of a template is one no more. A name that something else in the case goes by stays. */
+  private rename(name: string): void {
+    const [body, title] = ["body.0.name", "run.title"].map((key) => this.values[key]);
+    if (!body?.given) return;
+    const old = JSON.parse(body.text) as string;
+    const said = this.text.value.replace(/#.*$/gm, "");
+    const own = title?.text === body.text ? 2 : 1; // the title and the name itself
+    if (said.split(body.text).length - 1 > own || said.includes(`body.${old}.`)) return;
+    this.change("body.0.name", JSON.stringify(name));
+    if (title?.given && title.text.includes(old)) this.change("run.title", JSON.stringify(name));
+  }
+
+  /** Dents that the grid cannot see are filled, no larger ones than it takes; `size`: of the body, in the unit of its file. */
+  private async simplify(file: string, size: number): Promise<void> {
+    await this.edits;
+    const unseen = (): boolean => (this.judgement?.problems ?? []).some((p) => p.severity === "error" && p.key === "body.0" && p.what.includes("cells across"));
+    const scale = Number(this.values["body.0.scale"]?.text ?? 1);
+    for (const share of [0.01, 0.02, 0.04, 0.06, 0.08, 0.1]) {
+      if (!unseen()) return;
+      const filled = Number((share * size * scale * 1e3).toPrecision(2));
+      this.shapes.simplified(file, filled);
+      this.change("body.0.fit_error", `"${filled} mm"`);
+      await this.edits;
+    }
+    if (unseen()) this.change("body.0.fit_error", null);
+    await this.edits;
   }
 
   /** A file becomes the shape of the first body. What the checker then finds out of place was of its former shape. */
@@ -214,6 +246,8 @@ export class CaseView {
       const left = (this.judgement?.problems ?? []).filter((p) => p.severity === "error" && p.key.startsWith("body.0.") && this.judgement?.values?.[p.key]?.given);
       for (const { key } of left) this.change(key, null);
       await this.edits;
+      this.rename(name.replace(/\.stl$/i, ""));
+      await this.simplify(name, Math.max(...extent));
     } catch (error) {
       this.say((error as Error).message);
     }

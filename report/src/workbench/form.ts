@@ -2,6 +2,7 @@
 
 import { h } from "../dom";
 import type { Key, Problem, SchemaSection, Value } from "./api";
+import { renew } from "./renew";
 
 export interface FormEvents {
   /** `value` stands as TOML; null: back to the default. */
@@ -53,14 +54,13 @@ export class Form {
   }
 
   private build(counts: Record<string, number>): void {
-    const open = new Set([...this.element.querySelectorAll("details[open]")].map((d) => d.id));
-    if (this.element.childElementCount === 0) for (const name of ["run", "body.0", "valve", "launch", "splitter"]) open.add(`section-${name}`);
+    const open = this.element.childElementCount === 0 ? ["run", "body.0", "valve", "launch", "splitter"] : [];
     this.fields.clear();
     const rank = (s: SchemaSection): number => (FIRST.includes(s.name) ? FIRST.indexOf(s.name) : FIRST.length);
     const ordered = [...this.schema].sort((a, b) => rank(a) - rank(b));
-    this.element.replaceChildren(...ordered.flatMap((section) => {
+    renew(this.element, ...ordered.flatMap((section) => {
       const places = section.repeated ? [...Array(counts[section.name] ?? 0).keys()].map((n) => `${section.name}.${n}`) : [section.name];
-      return places.map((place) => this.section(section, place, open.has(`section-${place}`)));
+      return places.map((place) => this.section(section, place, open.includes(place)));
     }));
   }
 
@@ -130,11 +130,13 @@ export class Form {
   }
 
   private mark(problems: Problem[]): void {
-    for (const [path, { field }] of this.fields) {
+    for (const [path, { field, key }] of this.fields) {
       const mine = problems.find((p) => p.key === path);
       const fault = field.querySelector<HTMLElement>(".fault")!;
       fault.hidden = !mine;
       fault.textContent = mine ? `${mine.what}${mine.expected ? `; expected: ${mine.expected}` : ""}` : "";
+      // What only another choice needs, another shape of the body, is out of the way.
+      field.hidden = key.default.startsWith("needed for") && !mine && !field.classList.contains("given");
       fault.className = `fault ${mine?.severity ?? ""}`;
       field.querySelector("input, select")!.setAttribute("aria-invalid", String(mine?.severity === "error"));
     }

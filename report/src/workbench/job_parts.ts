@@ -33,16 +33,18 @@ export class JobActions {
     return list;
   }
 
-  /** `act` gives nothing where somebody thought better of it. */
+  /** `act` gives nothing where somebody thought better of it. A button that waits for its answer keeps the focus, which one
+   * that is disabled loses. */
   private button(job: Job, words: string, act: () => Promise<unknown> | null): HTMLElement {
     const b = h("button", { type: "button", "aria-label": `${words} ${job.name}` }, words);
     b.addEventListener("click", () => {
+      if (b.ariaDisabled) return;
       const done = act();
       if (!done) return;
-      b.disabled = true;
+      b.ariaDisabled = "true";
       done.then(() => this.say(""), (error: Error) => {
         this.say(error.message);
-        b.disabled = false;
+        b.ariaDisabled = null;
       });
     });
     return b;

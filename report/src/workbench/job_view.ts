@@ -13,6 +13,7 @@ import { studyCharts, type StudyResult } from "../study_page";
 import { api, fileOf, type Job } from "./api";
 import { JobActions, progressOf } from "./job_parts";
 import { LiveRun } from "./live_run";
+import { renew } from "./renew";
 
 /** Shows what there is of a job now; called again whenever it has changed. */
 type Look = (job: Job) => Promise<void>;
@@ -56,9 +57,7 @@ export class JobView {
     this.verdict.textContent = unbroken(job.verdict ?? "");
     this.said.hidden = !job.said;
     this.said.textContent = job.said ?? "";
-    const focused = this.buttons.contains(document.activeElement) ? document.activeElement?.getAttribute("aria-label") : null;
-    this.buttons.replaceChildren(...this.actions.of(job));
-    if (focused) [...this.buttons.querySelectorAll<HTMLElement>("button, a")].find((b) => b.getAttribute("aria-label") === focused)?.focus();
+    renew(this.buttons, ...this.actions.of(job));
     this.look ??= this.lookAt(job);
     this.look(job).then(paintSwatches).catch((error: Error) => (this.note.textContent = error.message));
   }
@@ -68,23 +67,23 @@ export class JobView {
       case "run": {
         const live = new LiveRun(job.name);
         this.content.replaceChildren(live.element);
-        return () => live.look();
+        return ({ state }) => live.look(state === "done");
       }
       case "study":
-        return async ({ name }) => this.content.replaceChildren(studyContent(await api.study<StudyResult>(name)));
+        return async ({ name }) => renew(this.content, studyContent(await api.study<StudyResult>(name)));
       case "map":
         return async ({ name, verdict }) => {
-          if (verdict) this.content.replaceChildren(mapContent(await api.json<MapResult>(name, "result.json"), name));
+          if (verdict) renew(this.content, mapContent(await api.json<MapResult>(name, "result.json"), name));
         };
       case "sort":
         return async ({ name, state }) => {
           if (state !== "done") return;
           const [result, view] = await Promise.all([api.json<SortResult>(name, "result.json"), api.json<SortView>(name, "view.json")]);
-          this.content.replaceChildren(sortFacts(result), sortView({ ...result, view }));
+          renew(this.content, sortFacts(result), sortView({ ...result, view }));
         };
       case "campaign":
         return async ({ name, verdict }) => {
-          if (verdict) this.content.replaceChildren(campaignContent(await api.json<Campaign>(name, "result.json"), name));
+          if (verdict) renew(this.content, campaignContent(await api.json<Campaign>(name, "result.json"), name));
         };
     }
   }

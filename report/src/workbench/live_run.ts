@@ -2,7 +2,7 @@
 
 import { axisLabel, growingChart, type Series } from "../charts";
 import { componentColour } from "../colour";
-import { readFrame, readHeader, type RawFrame, type RawHeader, type Run } from "../data";
+import { readFrame, readHeader, strongest, type RawFrame, type RawHeader, type Run } from "../data";
 import { h } from "../dom";
 import { fixed } from "../format";
 import { Player } from "../player";
@@ -29,8 +29,9 @@ export class LiveRun {
     this.element.append(this.picture, this.charts);
   }
 
-  /** Takes in what has come since. */
-  async look(): Promise<void> {
+  /** Takes in what has come since. Who followed it to its end is shown the moment that decided: at the end itself the air
+   * is no longer computed and the body has left. */
+  async look(done: boolean): Promise<void> {
     if (this.busy) return; // the next look has it
     this.busy = true;
     try {
@@ -38,6 +39,8 @@ export class LiveRun {
       if (!lines) this.begin(null); // it went back to a checkpoint
       else await this.take(lines);
       await this.history?.look(this.player);
+      const push = done ? this.history?.strongestPush() : null;
+      if (this.player && !this.player.playing && this.player.time >= this.player.end && push) this.player.seek(push);
     } finally {
       this.busy = false;
     }
@@ -129,6 +132,12 @@ class LiveHistory {
   /** One look after the other: each takes what the last one left. */
   look(player: Player | null): Promise<void> {
     return (this.looks = this.looks.then(() => this.take(player)));
+  }
+
+  /** When the air pushed hardest, s; null where none did. */
+  strongestPush(): number | null {
+    const { at } = strongest(COMPONENTS.map((component) => this.values.get(`force_${component}`) ?? []));
+    return at < 0 ? null : this.time[at]! / 1e3;
   }
 
   private async take(player: Player | null): Promise<void> {

@@ -6,6 +6,7 @@ import { api, watchFolder, type FolderState } from "./api";
 import { CaseView } from "./case_view";
 import { JobListView } from "./job_list";
 import { JobView } from "./job_view";
+import { renew } from "./renew";
 
 function followTheme(): void {
   const dark = matchMedia("(prefers-color-scheme: dark)");
@@ -20,15 +21,22 @@ function followTheme(): void {
 
 async function start(): Promise<void> {
   const app = document.getElementById("app")!;
-  const [schema, { folder, cases }] = await Promise.all([api.schema(), api.cases()]);
+  // It is large, and the list of runs needs none of it. What did not come, as the server had gone, is asked for again.
+  let asked: ReturnType<typeof api.schema> | null = null;
+  const schema = (): ReturnType<typeof api.schema> => (asked ??= api.schema().catch((error: Error) => {
+    asked = null;
+    throw error;
+  }));
+  schema().catch(() => undefined);
   const main = h("main", { id: "content" });
   const list = h("ul", {});
   const note = h("p", { class: "note", role: "status" });
+  const folder = h("p", { class: "folder" });
   const lost = h("p", { class: "lost", role: "alert", hidden: true }, "The server does not answer. Runs go on; this page finds them again when it is back.");
   const trouble = h("p", { class: "lost", role: "alert", hidden: true });
   let view: CaseView | null = null;
   let job: JobView | null = null;
-  let state: FolderState = { jobs: [], cases, at_once: 1, trouble: "" };
+  let state: FolderState = { folder: "", jobs: [], cases: [], at_once: 1, trouble: "" };
 
   const mark = (name: string): void => {
     for (const b of document.querySelectorAll<HTMLElement>("[data-case]"))
@@ -38,8 +46,13 @@ async function start(): Promise<void> {
   const leave = (): boolean => !view?.changed || confirm(`${view.name} is not saved. Leave it?`);
   const swap = (element: HTMLElement, name: string): void => {
     view = job = null;
+    const focused = main.contains(document.activeElement);
     main.replaceChildren(element);
     mark(name);
+    if (!focused) return;
+    const title = element.querySelector("h1")!; // where who works by the keyboard goes on
+    title.tabIndex = -1;
+    title.focus({ preventScroll: true });
   };
   const showJob = (name: string): void => {
     const shown = new JobView(name, showJobs);
@@ -50,7 +63,7 @@ async function start(): Promise<void> {
   const jobs = new JobListView(showJob);
   const showJobs = (): void => swap(jobs.element, "");
   const showCase = async (name: string): Promise<void> => {
-    const shown = new CaseView(name, schema, showJob, (copy) => {
+    const shown = new CaseView(name, await schema(), showJob, (copy) => {
       add(copy);
       void showCase(copy);
     });
@@ -64,7 +77,7 @@ async function start(): Promise<void> {
     return b;
   };
   const showCases = (names: string[]): void => {
-    list.replaceChildren(...names.map((name) => h("li", {}, entry(name, name, () => {
+    renew(list, ...names.map((name) => h("li", {}, entry(name, name, () => {
       if (leave()) showCase(name).catch((error: Error) => (note.textContent = error.message));
     }))));
     mark(view?.name ?? "");
@@ -73,13 +86,13 @@ async function start(): Promise<void> {
   const update = (now: FolderState): void => {
     if (now.cases !== state.cases && now.cases.join("\n") !== [...list.querySelectorAll("[data-case]")].map((b) => b.getAttribute("data-case")).join("\n")) showCases(now.cases);
     state = now;
+    folder.title = now.folder;
+    folder.textContent = now.folder.split("/").at(-1)!;
     trouble.hidden = !now.trouble;
     trouble.textContent = now.trouble;
     jobs.show(now);
     job?.show(now.jobs.find((one) => one.name === job!.name));
   };
-  showCases(cases);
-
   const newName = h("input", { type: "text", id: "new-name", placeholder: "my-rock.toml", autocomplete: "off", "aria-label": "Name of a new case" });
   const create = h("form", { class: "new" }, newName, h("button", { type: "submit" }, "New case"));
   create.addEventListener("submit", (event) => {
@@ -106,7 +119,7 @@ async function start(): Promise<void> {
   app.replaceChildren(
     h("a", { class: "skip", href: "#content" }, "Skip to the content"),
     h("div", { class: "desk" },
-      h("nav", { class: "side", "aria-label": "Cases and runs" }, h("span", { class: "brand" }, "Ejecta"), h("p", { class: "folder", title: folder }, folder.split("/").at(-1)!),
+      h("nav", { class: "side", "aria-label": "Cases and runs" }, h("span", { class: "brand" }, "Ejecta"), folder,
         entry("", "Runs", () => leave() && showJobs()), h("h2", {}, "Cases"), list, create, note),
       h("div", { class: "content" }, lost, trouble, main)));
   showJobs();

@@ -4,6 +4,7 @@
 import { h } from "../dom";
 import { fixed } from "../format";
 import type { BodyCheck, Key, SchemaSection, Value } from "./api";
+import { renew } from "./renew";
 
 type Quaternion = [w: number, x: number, y: number, z: number];
 type Extent = [number, number, number];
@@ -32,7 +33,7 @@ export class ShapePanel {
   readonly element = h("div", { class: "shapes" });
   private readonly lengths: Key;
   private readonly angles: Key;
-  private readonly guessed = new Map<string, { extent: Extent; unit: string }>();
+  private readonly guessed = new Map<string, { extent: Extent; unit: string; filled?: number }>();
   private values: Record<string, Value> = {};
   private readonly panels = new Map<string, { element: HTMLElement; fill: (size: Extent | undefined) => void }>();
 
@@ -49,6 +50,19 @@ export class ShapePanel {
     const unit = GUESSES.find(likely) ?? "mm";
     this.guessed.set(file, { extent, unit });
     return [["body.0.shape", '"mesh"'], ["body.0.file", JSON.stringify(file)], ["body.0.scale", String(this.factor(unit))]];
+  }
+
+  /** Dents of up to so many mm were filled, since the grid does not see them. */
+  simplified(file: string, filled: number): void {
+    const guess = this.guessed.get(file);
+    if (guess) guess.filled = filled;
+  }
+
+  /** Of a length as the case has it, mm. */
+  private millimetres(path: string): number | null {
+    const [value, unit] = /^"\s*([-+0-9.eE]+)\s*([a-z]+)\s*"$/.exec(this.values[path]?.text ?? "")?.slice(1) ?? [];
+    const known = unit !== undefined && this.lengths.units.includes(unit);
+    return known ? Number((Number(value) * this.factor(unit) * 1e3).toPrecision(6)) : null;
   }
 
   private factor(unit: string): number {
@@ -70,7 +84,7 @@ export class ShapePanel {
     }
     for (const [id] of this.panels) if (!there.has(id)) this.panels.delete(id);
     const shown = [...this.panels.values()].map((panel) => panel.element);
-    if (shown.length !== this.element.childElementCount || shown.some((e, n) => this.element.children[n] !== e)) this.element.replaceChildren(...shown);
+    if (shown.length !== this.element.childElementCount || shown.some((e, n) => this.element.children[n] !== e)) renew(this.element, ...shown);
   }
 
   private scaleOf(body: number): number {
@@ -79,10 +93,18 @@ export class ShapePanel {
 
   private panel(body: number, file: string): { element: HTMLElement; fill: (size: Extent | undefined) => void } {
     const id = `shape-${body}`;
-    const unit = h("select", { id: `${id}-unit` }, ...this.lengths.units.map((u) => h("option", { value: u }, u)), h("option", { value: "", disabled: true }, "another"));
+    const unit = h("select", { id: `${id}-unit` }, ...this.lengths.units.map((u) => h("option", { value: u }, u)), h("option", { value: "", disabled: true }, "none of these"));
     unit.addEventListener("change", () => this.change(`body.${body}.scale`, String(this.factor(unit.value))));
     const size = h("span", { class: "size" });
     const guess = h("p", { class: "note" });
+    const longest = h("input", { id: `${id}-longest`, type: "number", min: 0, step: "any" });
+    let now = 0; // its longest side, mm
+    longest.addEventListener("change", () => {
+      const wanted = Number(longest.value);
+      if (wanted > 0 && now > 0) this.change(`body.${body}.scale`, String(Number(((this.scaleOf(body) * wanted) / now).toPrecision(6))));
+    });
+    const filled = h("input", { id: `${id}-filled`, type: "number", min: 0, step: "any", placeholder: "none" });
+    filled.addEventListener("change", () => this.change(`body.${body}.fit_error`, Number(filled.value) > 0 ? `"${filled.value} mm"` : null));
     const angle = h("input", { id: `${id}-angle`, type: "number", value: 90, step: 5 });
     const turns = AXES.map((axis, d) => {
       const b = h("button", { type: "button", "aria-label": `Turn ${file} about ${axis}` }, axis);
@@ -95,7 +117,9 @@ export class ShapePanel {
       this.change(`body.${body}.rotation_angle`, null);
     });
     const element = h("fieldset", {}, h("legend", {}, file),
-      h("div", { class: "row" }, h("label", { for: unit.id }, "The file is in"), unit, size), guess,
+      h("div", { class: "row" }, h("label", { for: unit.id }, "The file is in"), unit, size),
+      h("div", { class: "row" }, h("label", { for: longest.id }, "Longest side"), longest, "mm"),
+      h("div", { class: "row" }, h("label", { for: filled.id }, "Dents filled up to"), filled, "mm"), guess,
       h("div", { class: "row" }, h("label", { for: angle.id }, "Turn by"), angle, "\u00b0 about", ...turns, back));
     const fill = (checked: Extent | undefined): void => {
       const scale = this.scaleOf(body);
@@ -103,8 +127,16 @@ export class ShapePanel {
       if (document.activeElement !== unit) unit.value = known ?? "";
       const first = this.guessed.get(file);
       const m = checked ?? first?.extent.map((v) => v * scale);
+      now = m ? Math.max(...m) * 1e3 : 0;
+      longest.disabled = !m;
+      if (document.activeElement !== longest) longest.value = m ? fixed(now, 1) : "";
+      const gone = this.millimetres(`body.${body}.fit_error`);
+      if (document.activeElement !== filled) filled.value = gone === null ? "" : String(gone);
       size.textContent = m ? `${m.map((v) => fixed(v * 1e3, 1)).join(" \u00d7 ")} mm` : "";
-      guess.textContent = first && known === first.unit ? `An STL file does not say its unit: ${first.unit} is guessed from its size. Is it that large?` : "";
+      guess.textContent = [
+        first && known === first.unit ? `An STL file does not say its unit: ${first.unit} is guessed from its size. Is it that large?` : "",
+        first?.filled && gone === first.filled ? `Dents of up to ${gone} mm are filled: the grid cannot see finer parts, and the air's force on them would be wrong.` : "",
+      ].filter(Boolean).join(" ");
       const given = this.values[`body.${body}.rotation_angle`]?.given || this.values[`body.${body}.rotation_axis`]?.given;
       back.disabled = !given;
     };

@@ -8,6 +8,7 @@
 #include "app/cli/case_options.hpp"
 #include "app/cli/commands.hpp"
 #include "base/exit_code.hpp"
+#include "base/parallel.hpp"
 #include "simulation/body_checks.hpp"
 #include "simulation/forecast.hpp"
 #include "validation/validation.hpp"
@@ -18,16 +19,19 @@ void add_check(CLI::App& app, Action& action) {
   struct Options {
     std::vector<std::string> cases, overrides;
     bool json = false;
+    int threads = 0;
   };
   CLI::App* command = app.add_subcommand(
       "check", "What a run will be: cells, steps, time, memory, disk, assumptions; runs nothing");
   auto o = std::make_shared<Options>();
   command->add_option("CASE", o->cases, "Case files (.toml)")->required()->type_name("");
   add_overrides(*command, o->overrides);
+  add_threads(*command, o->threads);
   command->add_flag("--json", o->json, "For programs: a list of one object a case (docs/files.md)");
   command->footer("Examples:\n  ejecta check cases/paper/*.toml\n  ejecta check my-case.toml --json");
   command->callback([o, &action] {
     action = [o] {
+      if (o->threads > 0) set_thread_count(o->threads);
       const double bandwidth = measured_bandwidth();
       nlohmann::ordered_json list = nlohmann::ordered_json::array();
       int code = exit_done;

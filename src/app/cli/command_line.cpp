@@ -4,12 +4,15 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <filesystem>
 #include <string_view>
 
 #include "app/cli/commands.hpp"
 #include "base/exit_code.hpp"
 #include "base/parallel.hpp"
+#include "base/shell_word.hpp"
 #include "base/text.hpp"
+#include "base/told.hpp"
 #include "output/build_info.hpp"
 
 namespace ejecta {
@@ -34,6 +37,9 @@ std::string wrong_words(const CLI::App& command, const CLI::ParseError& e) {
       std::find_if(left.begin(), left.end(), [](const std::string& word) { return word.starts_with('-'); });
   if (option == left.end())
     return left.empty() ? e.what() : fmt::format("\"{}\" is one word too many", left.front());
+  std::error_code none;
+  if (std::filesystem::exists(*option, none))
+    return fmt::format("\"{}\" is taken for an option\n  example:  {}", *option, path_word(*option));
   std::vector<std::string> known;
   for (const CLI::Option* o : command.get_options())
     for (const std::string& name : o->get_lnames()) known.push_back("--" + name);
@@ -66,13 +72,16 @@ bool is_command(const CLI::App& app, const std::string& word) {
 void print_input_error(const InputError& e) {
   // A list of the errors of a case says so itself, error by error.
   const bool list = std::string_view(e.what()).find("error: ") != std::string_view::npos;
-  fmt::print(stderr, "{}{}\n", list ? "" : "error: ", e.what());
-  if (!e.advice.expected.empty()) fmt::print(stderr, "  expected: {}\n", e.advice.expected);
-  if (!e.advice.example.empty()) fmt::print(stderr, "  example:  {}\n", e.advice.example);
+  fmt::print(stderr, "{}{}\n", list ? "" : "error: ", told(e));
 }
 
 int run_command_line(int argc, const char* const* argv) {
   flush_denormals();
+  if (argc > 1 && std::string_view(argv[1]) == "help") {  // what people type first: help, help COMMAND
+    std::vector<const char*> words{argv[0], "--help"};
+    if (argc > 2) words.insert(words.begin() + 1, argv[2]);
+    return run_command_line(static_cast<int>(words.size()), words.data());
+  }
   CLI::App app(
       "Ejecta predicts which particles an air-jet sorter ejects: it computes the pulsed air jet, the "
       "particles\n"
@@ -82,8 +91,8 @@ int run_command_line(int argc, const char* const* argv) {
       "  ejecta check my-case.toml      what the run will be\n"
       "  ejecta run my-case.toml        runs it\n",
       "ejecta");
-  app.set_version_flag("--version", fmt::format("{} ({}, kernels for {})", output::version(),
-                                                output::git_revision(), output::kernels()));
+  app.set_version_flag("-v,--version", fmt::format("{} ({}, kernels for {})", output::version(),
+                                                   output::git_revision(), output::kernels()));
   app.require_subcommand(1);
   app.get_formatter()->label("SUBCOMMAND", "COMMAND");
   app.get_formatter()->label("Positionals", "Arguments");

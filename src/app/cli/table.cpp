@@ -30,14 +30,7 @@ void add_table(CLI::App& app, Action& action) {
       "Examples:\n  ejecta table *.run\n  ejecta table 10mm-cubic.run --out 10mm-cubic.xlsx");
   command->callback([o, &action] {
     action = [o] {
-      if (o->out.extension() == ".xlsx") output::write_workbook(o->runs, o->out);
-      else if (o->out.extension() == ".csv")
-        output::write_file(o->out, output::csv_text(output::results_table(o->runs)));
-      else
-        throw InputError(
-            fmt::format("\"{}\" is no table\n  expected: a name that ends with .csv or .xlsx\n"
-                        "  example:  --out results.xlsx",
-                        o->out.string()));
+      output::write_results(o->runs, o->out);
       fmt::print("{}\n", o->out.string());
       return int{exit_done};
     };
