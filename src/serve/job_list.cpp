@@ -242,6 +242,10 @@ void JobList::remove(const std::string& name) {
   if (hidden || kind_of(name).empty() || (!fs::exists(directory) && !fs::exists(log)))
     throw InputError(fmt::format("there is nothing like {}", name));
   if (goes_on(name)) throw InputError(fmt::format("{} goes on: stop it first", name));
+  // That it has ended may not have been noticed yet.
+  queue_.change([&](Queue::State& q, const Queue::Keep&) {
+    std::erase_if(q.started, [&](const Job& job) { return job.name == name; });
+  });
   fs::path away;
   for (int number = 1; away.empty() || fs::exists(away); ++number)
     away = folder_.path() / ".removed" / std::to_string(number);
