@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <optional>
 
 #include "base/error.hpp"
 #include "case/problem.hpp"
@@ -67,20 +68,33 @@ Particles::Dent Particles::deepest(const CandidateSearch& found, int only) const
   return worst;
 }
 
-Vec3 Particles::clear_place(const Dent& dent) const {
-  constexpr int kTries = 40;
+std::optional<Vec3> Particles::clear_place(const Dent& dent) const {
+  constexpr int kTries = 40, kShells = 24;
   const int body = dent.body;
+  const Vec3 start = bodies_[static_cast<std::size_t>(body)].position;
   Particles trial = *this;
   Body& b = trial.bodies_[static_cast<std::size_t>(body)];
-  Dent next = dent;
-  for (int n = 0; n < kTries && next.overlap > 0; ++n) {
-    b.position += (next.body == body ? 1.01 : -1.01) * next.way * next.normal;
+  const auto dent_at = [&](const Vec3& place) {
+    b.position = place;
     trial.parts_.update(body, b, b.velocity, b.angular_velocity);
     trial.search_.find(trial.parts_, trial.bodies_, walls_, domain_, 0.0, nullptr);
-    next = trial.deepest(trial.search_, body);
-    if (!(next.overlap > 0)) next = trial.deepest_in_walls(static_cast<std::size_t>(body));
+    const Dent found = trial.deepest(trial.search_, body);
+    return found.overlap > 0 ? found : trial.deepest_in_walls(static_cast<std::size_t>(body));
+  };
+  Dent next = dent;
+  for (int n = 0; n < kTries; ++n) {  // out of the deepest, again and again
+    next = dent_at(b.position + (next.body == body ? 1.01 : -1.01) * next.way * next.normal);
+    if (!(next.overlap > 0)) return b.position;
   }
-  return b.position;
+  for (int shell = 1; shell <= kShells;
+       ++shell)  // between walls that leads nowhere: the nearest that is free
+    for (int n = 0; n < 27; ++n) {
+      const Vec3 along(n % 3 - 1, n / 3 % 3 - 1, 1 - n / 9);  // upwards first
+      if (along.isZero()) continue;
+      const double far = 0.25 * shell * b.shape.bounding_radius();
+      if (!(dent_at(start + far * along.normalized()).overlap > 0)) return b.position;
+    }
+  return std::nullopt;
 }
 
 Particles::Dent Particles::deepest_in_walls(std::size_t n) const {
@@ -109,13 +123,15 @@ void Particles::require_clear(const Dent& dent, const char* when) const {
   if (!(dent.overlap > 0)) return;
   const auto other = dent.other < 0 ? walls_[static_cast<std::size_t>(-1 - dent.other)].name
                                     : bodies_[static_cast<std::size_t>(dent.other)].name;
+  const std::optional<Vec3> free = clear_place(dent);
   throw InputError(
       fmt::format("body \"{}\" overlaps {} \"{}\" by {:.4g} mm {}; move it by at least that along ({:.3f}, "
                   "{:.3f}, {:.3f})",
                   bodies_[static_cast<std::size_t>(dent.body)].name, dent.other < 0 ? "wall" : "body", other,
                   1e3 * dent.way, when, dent.normal.x(), dent.normal.y(), dent.normal.z()),
       {.expected = "bodies and walls that are apart when the run starts",
-       .example = place_line("position", clear_place(dent))});
+       .example =
+           free ? place_line("position", *free) : "a smaller body, or more room: none was found near"});
 }
 
 void Particles::require_apart() {

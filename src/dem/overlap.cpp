@@ -389,9 +389,12 @@ Overlap overlap_polytopes(const Polytope& a, const Polytope& b, const Mat3& rota
   // The two areas are opposite, but where a seam takes part only the other solid's is all surface.
   const Vec3 seams_a = seams_within(s, a, a.vertices, shared);
   const bool cut_a = !seams_a.isZero(), cut_b = !seams_b.isZero();
-  o.area = cut_a == cut_b ? Vec3(0.5 * ((area_b - seams_b) - (area_a - seams_a)))
-           : cut_b        ? Vec3(area_b - seams_b)
-                          : Vec3(seams_a - area_a);
+  const Vec3 hidden = cut_a == cut_b ? Vec3(0.5 * (seams_b - seams_a)) : cut_b ? seams_b : Vec3(-seams_a);
+  o.area = (cut_a == cut_b ? Vec3(0.5 * (area_b - area_a)) : cut_b ? area_b : Vec3(-area_a)) - hidden;
+  // What lies behind a seam that looks the way of the contact belongs to the part before it: of a corner of
+  // walls, what is reached through the other wall.
+  const double open = o.area.norm();
+  if (open > 0) o.volume *= open / (open + std::max(0.0, o.area.dot(hidden) / open));
   return thicker_than(kFilm * hair, o);
 }
 

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <limits>
 #include <map>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -146,8 +147,8 @@ class Particles {
   Dent deepest(const CandidateSearch& found, int only = -1) const;
   /// How far a polytope must move along a contact's normal to be clear of what it touches, m.
   double way_out(const SolidPair& pair, const Touch& touch) const;
-  /// Near where it is, where the body of a dent would touch nothing.
-  Vec3 clear_place(const Dent& dent) const;
+  /// Near where it is, where the body of a dent would touch nothing; none: not found.
+  std::optional<Vec3> clear_place(const Dent& dent) const;
   Dent deepest_in_walls(std::size_t n) const;
   void require_clear(const Dent& dent, const char* when) const;
   [[noreturn]] void throw_diverged() const;
