@@ -63,9 +63,9 @@ class BallContacts {
 
   /// Gives balls their new indices (-1: gone, with its pairs).
   void rename(std::span<const int> names, int balls);
-  /// Both sides and history of each pair that has one.
+  /// Both sides of each pair, what it remembers and what it did at the last step.
   void save(std::vector<double>& out) const;
-  void load(StateReader& in, int balls);
+  void load(StateReader& in, const Parts& parts);
 
  private:
   static std::size_t at(int n) { return static_cast<std::size_t>(n); }

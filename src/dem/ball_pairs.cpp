@@ -202,37 +202,47 @@ void BallContacts::rename(std::span<const int> names, int balls) {
   arrange(kept[0], kept[1], balls);
 }
 
+/// All pairs, as they were listed: whether a ball near a rim is before a plane or before triangles depends on
+/// when.
 void BallContacts::save(std::vector<double>& out) const {
+  const int nobody = static_cast<int>(first_.size()) - 2;
   for (const bool plane : {false, true}) {
     const std::size_t head = out.size();
     out.push_back(0);
     for (std::size_t n = plane ? at(planes_from_) : 0; n < (plane ? a_.size() : at(planes_from_)); ++n) {
-      if (std::all_of(history_, history_ + kRemembered, [&](const auto& h) { return h[n] == 0.0; })) continue;
+      if (a_[n] == nobody) continue;
       out[head] += 1;
       out.push_back(a_[n]);
       out.push_back(b_[n]);
       for (const auto& h : history_) out.push_back(h[n]);
+      out.insert(out.end(), {rows_[n].half_overlap, rows_[n].elastic});
     }
   }
 }
 
-void BallContacts::load(StateReader& in, int balls) {
+void BallContacts::load(StateReader& in, const Parts& parts) {
+  const int balls = parts.ball_count();
+  constexpr std::size_t kStored = kRemembered + 2;
   std::vector<std::pair<int, int>> pairs[2];
-  std::vector<std::span<const double>> histories[2];
+  std::vector<std::span<const double>> stored[2];
   for (int k = 0; k < 2; ++k) {
-    pairs[k].resize(in.count(2 + kRemembered));
+    pairs[k].resize(in.count(2 + kStored));
     for (auto& [a, b] : pairs[k]) {
       a = in.whole(0, balls - 1);
-      b = in.whole(0, k == 0 ? balls - 1 : std::numeric_limits<int>::max());
-      histories[k].push_back(in.numbers(kRemembered));
+      b = in.whole(0, k == 0 ? balls - 1 : static_cast<int>(planes_.size()) - 2);
+      stored[k].push_back(in.numbers(kStored));
     }
   }
   arrange(pairs[0], pairs[1], balls);
   for (int k = 0; k < 2; ++k)
-    for (std::size_t n = 0; n < pairs[k].size(); ++n)
-      for (std::size_t h = 0; h < kRemembered; ++h)
-        history_[h][n + (k == 0 ? 0 : at(planes_from_))] = histories[k][n][h];
+    for (std::size_t n = 0; n < pairs[k].size(); ++n) {
+      const std::size_t here = n + (k == 0 ? 0 : at(planes_from_));
+      for (std::size_t h = 0; h < kRemembered; ++h) history_[h][here] = stored[k][n][h];
+      rows_[here].half_overlap = stored[k][n][kRemembered];
+      rows_[here].elastic = stored[k][n][kRemembered + 1];
+    }
   find_births();
+  group_pairs(parts);
 }
 
 }  // namespace ejecta

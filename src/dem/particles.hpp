@@ -134,6 +134,8 @@ class Particles {
   Vec3 acceleration(std::size_t n, std::span<const Load> loads) const;
   Vec3 torque_on(std::size_t n, std::span<const Load> loads) const;
   void list_candidates(double dt);
+  /// Whether there are such parts and walls.
+  bool exists(const SolidPair& pair) const;
   void note_friction();
   void pass_friction_on();
   /// How deep a body lies in something.

@@ -232,7 +232,9 @@ std::vector<double> Particles::state() const {
                         power_.from_outside,
                         asked_rate_,
                         exchanged_,
-                        leap_};
+                        leap_,
+                        relist_ ? 1.0 : 0.0,
+                        skin_};
   for (std::size_t n = 0; n < bodies_.size(); ++n) {
     const Body& b = bodies_[n];
     append(s, b.position);
@@ -241,6 +243,8 @@ std::vector<double> Particles::state() const {
     append(s, momentum_[n]);
     append(s, force_[n]);
     append(s, torque_[n]);
+    append(s, listed_at_[n]);
+    s.push_back(turned_[n]);
     s.insert(s.end(), {peaks_[n].overlap, peaks_[n].force, peaks_[n].time});
     s.push_back(static_cast<int>(presence_[n]) + (launches_[n].waiting ? kWaitsForRelease : 0) +
                 (fresh_[n] ? kFresh : 0));
@@ -248,6 +252,28 @@ std::vector<double> Particles::state() const {
   balls_.save(s);
   solids_.save(s);
   return s;
+}
+
+bool Particles::exists(const SolidPair& p) const {
+  const auto below = [](int n, std::size_t count) { return n >= 0 && static_cast<std::size_t>(n) < count; };
+  const auto is_part = [&](const PartKey& k, int body) {
+    if (k.kind == PartKind::ball)
+      return k.index < parts_.ball_count() && parts_.body_of_ball(k.index) == body;
+    return k.kind == PartKind::polytope && k.index >= parts_.first_polytope(body) &&
+           k.index < parts_.first_polytope(body + 1);
+  };
+  if (!is_part(p.a, p.body_a)) return false;
+  if (p.body_b >= 0) return p.b.kind == PartKind::polytope && is_part(p.b, p.body_b);
+  if (!below(p.b.index, walls_.size())) return false;
+  const Wall& wall = walls_[static_cast<std::size_t>(p.b.index)];
+  const bool ball = p.a.kind == PartKind::ball;
+  if (p.b.kind == PartKind::wall_plane) return wall.is_plane && !ball;
+  if (wall.is_plane) return false;
+  if (p.b.kind == PartKind::wall_triangle) return ball && below(p.b.solid, wall.surface->triangles().size());
+  if (ball) return false;
+  return p.b.kind == PartKind::wall_solid    ? below(p.b.solid, wall.solids.size())
+         : p.b.kind == PartKind::wall_region ? below(p.b.solid, wall.surface->regions().size())
+                                             : false;
 }
 
 void Particles::restore(std::span<const double> s) {
@@ -262,6 +288,8 @@ void Particles::restore(std::span<const double> s) {
   asked_rate_ = in.number();
   exchanged_ = in.number();
   leap_ = in.number();
+  relist_ = in.whole(0, 1) == 1;
+  skin_ = in.number();
   for (std::size_t n = 0; n < bodies_.size(); ++n) {
     Body& b = bodies_[n];
     b.position = in.vec3();
@@ -270,6 +298,8 @@ void Particles::restore(std::span<const double> s) {
     momentum_[n] = in.vec3();
     force_[n] = in.vec3();
     torque_[n] = in.vec3();
+    listed_at_[n] = in.vec3();
+    turned_[n] = in.number();
     peaks_[n].overlap = in.number();
     peaks_[n].force = in.number();
     peaks_[n].time = in.number();
@@ -283,10 +313,11 @@ void Particles::restore(std::span<const double> s) {
     if (b.course && !launches_[n].waiting) b.angular_velocity = b.course->spin(time_);
     parts_.update(static_cast<int>(n), b, b.velocity, b.angular_velocity);
   }
-  balls_.load(in, parts_.ball_count());
+  balls_.load(in, parts_);
   solids_.load(in, count);
   in.end();
-  relist_ = true;
+  for (const SolidPair& p : solids_.pairs())
+    if (!exists(p)) throw Error("bodies: a contact of the state is of parts or walls that are not there");
 }
 
 namespace {

@@ -367,23 +367,22 @@ double SolidContacts::wall_power() const {
 }
 
 void SolidContacts::save(std::vector<double>& out) const {
-  const std::size_t head = out.size();
-  out.push_back(0);
+  out.push_back(static_cast<double>(pairs_.size()));
   for (const SolidPair& p : pairs_) {
-    if (p.history == ContactHistory{}) continue;
-    out[head] += 1;
     for (const PartKey& k : {p.a, p.b})
       for (const int v : {static_cast<int>(k.kind), k.index, k.solid, k.image}) out.push_back(v);
     const ContactHistory& h = p.history;
     for (const int v : {p.body_a, p.body_b, h.side, h.face}) out.push_back(v);
     for (const Triple<double>& v : {h.slip, h.roll, h.normal}) out.insert(out.end(), {v.x, v.y, v.z});
     out.insert(out.end(), {h.twist.angle, h.twist.stiffness, h.energy, h.power, h.dent});
+    for (const Vec3& v : {p.shift, p.listed_at}) out.insert(out.end(), {v.x(), v.y(), v.z()});
+    out.insert(out.end(), {p.gap, p.away ? 1.0 : 0.0});
   }
 }
 
 void SolidContacts::load(StateReader& in, int bodies) {
   constexpr int any = std::numeric_limits<int>::max();
-  pairs_.assign(in.count(26), {});
+  pairs_.assign(in.count(34), {});
   for (SolidPair& p : pairs_) {
     for (PartKey* k : {&p.a, &p.b}) {
       k->kind = static_cast<PartKind>(in.whole(0, static_cast<int>(PartKind::wall_triangle)));
@@ -397,6 +396,9 @@ void SolidContacts::load(StateReader& in, int bodies) {
     for (Triple<double>* v : {&h.slip, &h.roll, &h.normal})
       for (double* c : {&v->x, &v->y, &v->z}) *c = in.number();
     for (double* v : {&h.twist.angle, &h.twist.stiffness, &h.energy, &h.power, &h.dent}) *v = in.number();
+    for (Vec3* v : {&p.shift, &p.listed_at}) *v = in.vec3();
+    p.gap = in.number();
+    p.away = in.whole(0, 1) == 1;
   }
   arrange();
 }

@@ -2,6 +2,8 @@
 
 #include <limits>
 #include <random>
+#include <string>
+#include <vector>
 
 #include "base/error.hpp"
 #include "scene.hpp"
@@ -62,6 +64,35 @@ class Damage {
   std::vector<double> whole_;
   std::mt19937 random_{11};
 };
+
+/// Which pairs were listed, and how, depends on when they were: a state holds them.
+TEST(Restore, BallsNearARimGoOnToTheBit) {
+  Case c = three_on_a_floor();
+  c.bodies.clear();
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> u(-1, 1);
+  for (int i = 0; i < 5; ++i)
+    for (int j = 0; j < 5; ++j)
+      c.bodies.push_back(ball("b" + std::to_string(5 * i + j), 10e-3,
+                              Vec3(0.016 * (i - 2), 0.016 * (j - 2), 5.02e-3),
+                              Vec3(u(random), u(random), 0)));
+  c.walls[0].kind = WallKind::box;
+  c.walls[0].size = Vec3(0.1, 0.1, 0.01);
+  c.walls[0].point = Vec3(0, 0, -5e-3);
+  Particles p = make_particles(c);
+  std::vector<std::vector<double>> states;
+  constexpr int kSteps = 160;
+  for (int n = 0; n < kSteps; ++n) {
+    states.push_back(p.state());
+    p.advance(1e-3);
+  }
+  for (int from = 0; from < kSteps; from += 7) {
+    Particles q = make_particles(c);
+    q.restore(states[static_cast<std::size_t>(from)]);
+    for (int n = from; n < kSteps; ++n) q.advance(1e-3);
+    EXPECT_EQ(q.state(), p.state()) << "from step " << from;
+  }
+}
 
 TEST(Restore, ADamagedStateIsRestoredOrRefused) {
   Particles p = make_particles(three_on_a_floor());
