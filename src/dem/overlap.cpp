@@ -306,10 +306,8 @@ Vec3 seams_within(Scratch& s, const Polytope& p, std::span<const Vec3> vertices,
   return total;
 }
 
-/// The overlap, or none where it is but a film: a face that lands would be pushed where rounding says.
-Overlap thicker_than(double film, const Overlap& o) {
-  return o.volume > film * o.area.norm() ? o : Overlap{};
-}
+/// Whether an overlap is but a film: a face that lands would be pushed where rounding says.
+bool is_film(const Overlap& o, double hair) { return !(o.volume > kFilm * hair * o.area.norm()); }
 
 }  // namespace
 
@@ -395,7 +393,8 @@ Overlap overlap_polytopes(const Polytope& a, const Polytope& b, const Mat3& rota
   // walls, what is reached through the other wall.
   const double open = o.area.norm();
   if (open > 0) o.volume *= open / (open + std::max(0.0, o.area.dot(hidden) / open));
-  return thicker_than(kFilm * hair, o);
+  if (is_film(o, hair)) o = {};
+  return o;
 }
 
 Overlap overlap_cell(const Polytope& a, std::span<const HalfSpace> planes) {
@@ -445,7 +444,8 @@ Overlap overlap_cell(const Polytope& a, std::span<const HalfSpace> planes) {
   o.volume = sums.volume;
   o.centroid = sums.apex + sums.moment / sums.volume;
   o.depth = planes[0].offset - planes[0].normal.dot(o.centroid);
-  return thicker_than(kFilm * hair, o);
+  if (is_film(o, hair)) o = {};
+  return o;
 }
 
 }  // namespace ejecta
