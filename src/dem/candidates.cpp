@@ -1,7 +1,6 @@
 #include "dem/candidates.hpp"
 
 #include <algorithm>
-#include <tuple>
 
 namespace ejecta {
 namespace {
@@ -201,11 +200,8 @@ void CandidateSearch::find(const Parts& parts, std::span<const Body> bodies, std
   }
   list_walls(walls, domain, balls, skin, before);
   std::sort(planes_.begin(), planes_.end());
-  const auto earlier = [](const SolidPair& p, const SolidPair& q) {
-    return std::tie(p.a, p.b) < std::tie(q.a, q.b);
-  };
   const auto same = [](const SolidPair& p, const SolidPair& q) { return p.a == q.a && p.b == q.b; };
-  std::sort(solids_.begin(), solids_.end(), earlier);
+  std::sort(solids_.begin(), solids_.end(), is_before);
   if (!domain.periodic()) return;
   // A pair across a side was found from both.
   std::sort(balls_.begin(), balls_.end());

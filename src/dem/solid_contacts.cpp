@@ -155,8 +155,7 @@ void SolidContacts::hand_over(int ball, int wall, const Vec3& normal, const std:
 }
 
 void SolidContacts::sort() {
-  std::sort(pairs_.begin(), pairs_.end(),
-            [](const SolidPair& p, const SolidPair& q) { return std::pair(p.a, p.b) < std::pair(q.a, q.b); });
+  std::sort(pairs_.begin(), pairs_.end(), is_before);
   arrange();
 }
 

@@ -2,6 +2,7 @@
 #include <array>
 #include <compare>
 #include <span>
+#include <tuple>
 #include <vector>
 
 #include "base/state_reader.hpp"
@@ -70,6 +71,11 @@ struct SolidPair {
   double elastic = 0.0;     ///< J
   double wall_power = 0.0;  ///< W, done by the moving wall on the body
 };
+
+/// The order in which contacts are kept.
+inline bool is_before(const SolidPair& p, const SolidPair& q) {
+  return std::tie(p.a, p.b) < std::tie(q.a, q.b);
+}
 
 /// Which of a wall's images a body meets: the periods (-1, 0, 1 along x, y, z) by which the body was moved to
 /// it, as one number. 0: the wall itself.
