@@ -106,12 +106,16 @@ std::vector<Vec3> lattice_places(const GrainsSpec& g, std::size_t count, double 
 /// Places one after the other, each clear of those before (random sequential addition).
 class RandomPlaces {
  public:
-  RandomPlaces(const GrainsSpec& g, double largest, const Particles& particles, const std::vector<Body>& made)
+  /// `count`: of those that places are looked for. Cells hold the largest, and are about as many.
+  RandomPlaces(const GrainsSpec& g, double largest, std::size_t count, const Particles& particles,
+               const std::vector<Body>& made)
       : particles_(particles), low_((*g.region)[0]), edges_((*g.region)[1] - low_) {
+    const double all = static_cast<double>(count + made.size());
+    const double width = std::max(largest, std::cbrt(edges_.prod() / all));
     for (int a = 0; a < 3; ++a) {
       const double period = particles.domain().period[a];
       periodic_[a] = period > 0 && std::abs(edges_[a] - period) < 1e-9 * edges_[a];
-      n_[a] = std::clamp(static_cast<int>(edges_[a] / largest), 1, 400);
+      n_[a] = static_cast<int>(std::clamp(edges_[a] / width, 1.0, 1e3));
     }
     cells_.resize(static_cast<std::size_t>(n_[0]) * static_cast<std::size_t>(n_[1]) *
                   static_cast<std::size_t>(n_[2]));
@@ -207,7 +211,7 @@ void add_group(const GrainsSpec& g, std::uint64_t group, const std::string& fold
   std::vector<Vec3> places;
   if (g.packing == GrainPacking::lattice) {
     places = lattice_places(g, sizes.size(), largest, particles.domain());
-    const RandomPlaces taken(g, widest, particles, made);
+    const RandomPlaces taken(g, widest, 1, particles, made);
     for (std::size_t n = 0; n < sizes.size(); ++n)
       if (taken.meets_grains(places[n], 0.5 * sizes[n]))
         throw InputError(
@@ -226,7 +230,7 @@ void add_group(const GrainsSpec& g, std::uint64_t group, const std::string& fold
       places.push_back(x);
     }
   } else {
-    RandomPlaces room(g, widest, particles, made);
+    RandomPlaces room(g, widest, sizes.size(), particles, made);
     for (std::size_t n = 0; n < sizes.size(); ++n) {
       const auto x = room.find(sizes[n], random);
       if (!x)

@@ -20,6 +20,7 @@ struct FluidFraction {
     for (Field* f : {&solids_before, &solids, &drag, &work}) *f = grid.make_field();
     for (auto* group : {&dragging, &seen, &push})
       for (Field& f : *group) f = grid.make_field();
+    for (Field& f : pressure_change) f = grid.make_field();
   }
 
   /// Part of each cell that is grains (of the fluid that bodies leave of it), at the beginning and at the end
@@ -37,6 +38,10 @@ struct FluidFraction {
   // Results of the last flow step: what a grain gathers.
   std::array<Field, 3> seen;  ///< velocity on which the drag acted, m/s
   std::array<Field, 3> push;  ///< (-grad p + div tau) / rho that acted on the fluid's part of each cell, m/s2
+
+  /// What the two stages of the last step added to the pressure, m2/s2: the guess of the next, without which
+  /// the same bits would not come again.
+  std::array<Field, 2> pressure_change;
 };
 
 }  // namespace ejecta

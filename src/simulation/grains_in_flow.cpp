@@ -103,6 +103,9 @@ std::vector<NamedField> GrainsInFlow::state_fields() {
   if (case_.flow.solver == FlowSolver::compressible_piso) {
     all.push_back({"work", &fraction_.work});
     all.push_back({"drag", &fraction_.drag});
+  } else if (fraction_.acts) {
+    all.push_back({"pressure_change_1", &fraction_.pressure_change[0]});
+    all.push_back({"pressure_change_2", &fraction_.pressure_change[1]});
   }
   return all;
 }

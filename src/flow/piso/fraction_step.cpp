@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "base/row_sum.hpp"
 #include "flow/cut_geometry.hpp"
 #include "flow/piso/projection.hpp"
 #include "flow/stencil.hpp"
@@ -24,7 +25,11 @@ FractionStep::FractionStep(const Grid& grid, const Boundaries& boundaries, FastD
     : grid_(grid), boundaries_(boundaries), poisson_(grid, boundaries, poisson) {
   for (auto* group : {&coefficient_, &gain_})
     for (Field& f : *group) f = grid.make_field();
-  for (Field* f : {&inverse_root_, &rhs_, &change_}) *f = grid.make_field();
+  for (Field* f : {&inverse_root_, &rhs_, &correction_}) *f = grid.make_field();
+  squares_.resize(static_cast<std::size_t>(grid.nz()));
+  floats_ = true;
+  for (int face = 0; face < 6; ++face)
+    floats_ = floats_ && !(grid.active(face / 2) && boundaries.kind(face) == BoundaryKind::open);
   for (int d = 0; d < 3; ++d) {
     const int n = grid.n(d);
     const std::size_t size = static_cast<std::size_t>(n + 1 + 2 * kRealLanes);
@@ -133,38 +138,86 @@ void FractionStep::find_roots(const FluidFraction& f, Real h, int j, int k) {
                 });
 }
 
+namespace {
+
+/// div q + de/dt over a cell, m3/s
+struct Imbalance {
+  Outflow through;
+  ConstFieldView now, before;
+  Real inv_dt;
+  EJECTA_KERNEL Real operator()(int i, int j, int k) const {
+    const Real volume = through.m[0].volume[i] * through.m[1].volume[j] * through.m[2].volume[k];
+    return through(i, j, k) - (now(i, j, k) - before(i, j, k)) * inv_dt * volume;
+  }
+  /// Squares of what flows through the faces: they tell what the balance of a cell can mean.
+  EJECTA_KERNEL Real flow_squared(int i, int j, int k) const {
+    const Real x = face_area<0>(through.m, i, j, k) * through.q[0](i, j, k),
+               y = face_area<1>(through.m, i, j, k) * through.q[1](i, j, k),
+               z = face_area<2>(through.m, i, j, k) * through.q[2](i, j, k);
+    return x * x + y * y + z * z;
+  }
+};
+
+Imbalance imbalance_of(const Grid& grid, const FluidFraction& f, double dt,
+                       const std::array<FieldView, 3>& q) {
+  return {outflow(grid, {q[0], q[1], q[2]}), f.solids.view(), f.solids_before.view(),
+          static_cast<Real>(1 / dt)};
+}
+
+}  // namespace
+
 void FractionStep::imbalance(const FluidFraction& f, double dt, const std::array<FieldView, 3>& q,
                              FieldView out) const {
-  const Outflow through = outflow(grid_, {q[0], q[1], q[2]});
-  const Real inv_dt = static_cast<Real>(1 / dt);
+  const Imbalance imbalance = imbalance_of(grid_, f, dt, q);
   for_each_cell(
-      grid_.range(), [ =, now = f.solids.view(), before = f.solids_before.view() ](
-                         int i, int j, int k) __attribute__((always_inline)) {
-        const Real volume = through.m[0].volume[i] * through.m[1].volume[j] * through.m[2].volume[k];
-        out(i, j, k) = through(i, j, k) - (now(i, j, k) - before(i, j, k)) * inv_dt * volume;
-      });
+      grid_.range(), [=](int i, int j, int k)
+                         __attribute__((always_inline)) { out(i, j, k) = imbalance(i, j, k); });
 }
 
-/// Root of the sum of squares of what flows through the faces of the cells, m3/s: it tells what the balance
-/// of a cell can mean.
-double FractionStep::size_of_flow(const std::array<FieldView, 3>& q) const {
-  const Outflow through = outflow(grid_, {q[0], q[1], q[2]});
-  return std::sqrt(reduce_sum(
-      grid_.range(), [=](int i, int j, int k) __attribute__((always_inline)) {
-        const Real x = face_area<0>(through.m, i, j, k) * through.q[0](i, j, k),
-                   y = face_area<1>(through.m, i, j, k) * through.q[1](i, j, k),
-                   z = face_area<2>(through.m, i, j, k) * through.q[2](i, j, k);
-        return double(x * x + y * y + z * z);
-      }));
+/// Into rhs_.
+FractionStep::Sizes FractionStep::find_imbalance(const FluidFraction& f, double dt,
+                                                 const std::array<FieldView, 3>& q) {
+  const Imbalance imbalance = imbalance_of(grid_, f, dt, q);
+  const FieldView out = rhs_.view();
+  std::vector<std::array<double, 2>>& planes = squares_;  // flow, imbalance
+  for_each_index(grid_.nz(), [&](int k) {
+    std::array<double, 2> plane{};
+    for (int j = 0; j < grid_.ny(); ++j) {
+      for_each_lane(
+          0, grid_.nx(), [=](int i) __attribute__((always_inline)) { out(i, j, k) = imbalance(i, j, k); });
+      plane[0] += row_sum(
+          0,
+          grid_.nx(), [=](int i) __attribute__((always_inline)) { return imbalance.flow_squared(i, j, k); });
+      plane[1] += row_sum(
+          0, grid_.nx(), [=](int i) __attribute__((always_inline)) {
+            return double(out(i, j, k)) * double(out(i, j, k));
+          });
+    }
+    planes[static_cast<std::size_t>(k)] = plane;
+  });
+  Sizes sums;
+  for (const auto& [flow, unbalanced] : planes) sums.flow += flow, sums.imbalance += unbalanced;
+  return {std::sqrt(sums.flow), std::sqrt(sums.imbalance)};
 }
 
-/// q -= c grad change on the lower D-faces of a row
+/// The pressure is taken to change as in this stage of the last step. Where nothing says what it is its level
+/// would run away, guess upon guess.
+void FractionStep::guess(FieldView change, FieldView p) const {
+  const double cells = double(grid_.nx()) * grid_.ny() * grid_.nz();
+  const Real level = floats_ ? static_cast<Real>(reduce_sum(grid_.range(), change) / cells) : Real(0);
+  for_each_cell(grid_.range(), [=](int i, int j, int k) {
+    change(i, j, k) -= level;
+    p(i, j, k) += change(i, j, k);
+  });
+}
+
+/// q -= c grad correction on the lower D-faces of a row
 template <int D>
 void FractionStep::correct_faces(FieldView q, int j, int k) const {
   constexpr std::size_t kD = D;
-  const ConstFieldView change = change_.view();
-  const std::ptrdiff_t s = stride(change, D);
-  const Real *c = coefficient_[kD].view().row(j, k), *of_row = change.row(j, k);
+  const ConstFieldView correction = correction_.view();
+  const std::ptrdiff_t s = stride(correction, D);
+  const Real *c = coefficient_[kD].view().row(j, k), *of_row = correction.row(j, k);
   for_each_lane(0, grid_.nx() + (D == 0), [=, to = q.row(j, k), m = grid_.metrics(D)](int i) {
     const int at = D == 0 ? i : D == 1 ? j : k;
     to[i] -= c[i] * (of_row[i] - of_row[i - s]) * m.inv_distance[at];
@@ -175,6 +228,8 @@ void FractionStep::project(FluidFraction& f, bool first, double h, double dt,
                            const std::array<FieldView, 3>& u, FieldView p,
                            const std::array<FieldView, 3>& q) {
   const Real step = static_cast<Real>(h), kept = first ? Real(0) : Real(1);
+  const FieldView change = f.pressure_change[first ? 0 : 1].view();
+  guess(change, p);
   for (const FieldView& c : u) boundaries_.fill_zero_gradient(c);
   boundaries_.fill_pressure(p, q, true);
   const auto for_each_row = [&](const auto& x, const auto& y, const auto& z, const auto& cells) {
@@ -193,19 +248,23 @@ void FractionStep::project(FluidFraction& f, bool first, double h, double dt,
                [&](int j, int k) { predict_faces<2>(f, step, u[2], p, q[2], j, k); },
                [&](int j, int k) { find_roots(f, step, j, k); });
   close_faces(q);
-  imbalance(f, dt, q, rhs_.view());
   constexpr double kTolerance = std::max(16 * double(std::numeric_limits<Real>::epsilon()), 1e-10);
-  iterations_ =
-      poisson_.solve({coefficient_[0].view(), coefficient_[1].view(), coefficient_[2].view()},
-                     inverse_root_.view(), rhs_.view(), kTolerance * size_of_flow(q), q, change_.view());
-  boundaries_.fill_pressure(change_.view(), q, false);
+  const Sizes sizes = find_imbalance(f, dt, q);
+  const FieldView correction = correction_.view();
+  iterations_ = poisson_.solve({coefficient_[0].view(), coefficient_[1].view(), coefficient_[2].view()},
+                               inverse_root_.view(), rhs_.view(), sizes.imbalance, kTolerance * sizes.flow, q,
+                               correction);
+  boundaries_.fill_pressure(correction, q, false);
   for_each_row([&](int j, int k) { correct_faces<0>(q[0], j, k); },
                [&](int j, int k) { correct_faces<1>(q[1], j, k); },
                [&](int j, int k) { correct_faces<2>(q[2], j, k); },
                [&](int j, int k) {
-                 for_each_lane(0, grid_.nx(), [to = p.row(j, k), from = change_.view().row(j, k)](int i) {
-                   to[i] += from[i];
-                 });
+                 for_each_lane(
+                     0, grid_.nx(),
+                     [to = p.row(j, k), all = change.row(j, k), more = correction.row(j, k)](int i) {
+                       to[i] += more[i];
+                       all[i] += more[i];
+                     });
                });
   boundaries_.prescribe_face_velocity(q);
   boundaries_.fill_pressure(p, q, true);

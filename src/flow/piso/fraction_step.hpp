@@ -23,15 +23,14 @@ class FractionStep {
  public:
   FractionStep(const Grid& grid, const Boundaries& boundaries, FastDiagonalPoisson& poisson);
 
-  /// m in `u`, which becomes the velocity; p, m2/s2, is the guess and then the pressure; q m/s through whole
-  /// faces. f.seen and f.push gain half of this stage's velocity and force, f.seen from nothing in the first
-  /// stage. `h`, s: of the stage, `dt` of the step. Ghosts of p by `boundaries`.
+  /// m in `u`, which becomes the velocity; p, m2/s2, is the pressure before and then after, guessed to change
+  /// as in this stage of the last step; q m/s through whole faces. f.seen and f.push gain half of this
+  /// stage's velocity and force, f.seen from nothing in the first stage. `h`, s: of the stage, `dt` of the
+  /// step. Ghosts of p by `boundaries`.
   void project(FluidFraction& f, bool first, double h, double dt, const std::array<FieldView, 3>& u,
                FieldView p, const std::array<FieldView, 3>& q);
   /// div q + de/dt, m3/s
   void imbalance(const FluidFraction& f, double dt, const std::array<FieldView, 3>& q, FieldView out) const;
-  /// What the last projection added to the pressure, m2/s2.
-  ConstFieldView change() const { return change_.view(); }
   int iterations() const { return iterations_; }  ///< of the last solution
 
  private:
@@ -39,6 +38,10 @@ class FractionStep {
   struct Shares {
     std::vector<Real> below;      // of face i: weight of cell i - 1
     std::vector<Real> low, high;  // of cell i: weights of its faces i and i + 1
+  };
+  /// Roots of sums of squares over the cells, m3/s.
+  struct Sizes {
+    double flow = 0, imbalance = 0;
   };
   template <int D>
   void predict_faces(const FluidFraction& f, Real h, ConstFieldView m, ConstFieldView p, FieldView q, int j,
@@ -49,7 +52,8 @@ class FractionStep {
   void correct_cells(FluidFraction& f, Real kept, FieldView u, ConstFieldView p, ConstFieldView q, int j,
                      int k) const;
   void find_roots(const FluidFraction& f, Real h, int j, int k);
-  double size_of_flow(const std::array<FieldView, 3>& q) const;
+  void guess(FieldView change, FieldView p) const;
+  Sizes find_imbalance(const FluidFraction& f, double dt, const std::array<FieldView, 3>& q);
   void close_faces(const std::array<FieldView, 3>& q);
 
   const Grid& grid_;
@@ -58,7 +62,9 @@ class FractionStep {
   std::array<Shares, 3> shares_;
   std::array<Field, 3> coefficient_;
   std::array<Field, 3> gain_;  // q - m of every face
-  Field inverse_root_, rhs_, change_;
+  Field inverse_root_, rhs_, correction_;
+  std::vector<std::array<double, 2>> squares_;  // of each plane
+  bool floats_;                                 // no boundary says what the pressure is
   int iterations_ = 0;
 };
 

@@ -85,7 +85,7 @@ void Incompressible::advance_through_grains(double time, double dt, CutCells& cu
   }
   book_pressure(p_.view(), kStageWeight, dt);
   std::swap(u_, u_star_);
-  for_each_cell(grid_.range(), [p = p_.view(), change = fraction_step_->change()](int i, int j, int k) {
+  for_each_cell(grid_.range(), [p = p_.view(), change = f.pressure_change[1].view()](int i, int j, int k) {
     p(i, j, k) -= Real(0.5) * change(i, j, k);
   });
   boundaries_.fill_pressure(p_.view(), views(q_), true);

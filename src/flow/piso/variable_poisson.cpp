@@ -72,31 +72,29 @@ double VariablePoisson::apply(const std::array<ConstFieldView, 3>& faces) {
 }
 
 int VariablePoisson::solve(const std::array<ConstFieldView, 3>& faces, ConstFieldView inverse_roots,
-                           FieldView r, double tolerance, const std::array<FieldView, 3>& q, FieldView phi) {
+                           FieldView r, double size, double tolerance, const std::array<FieldView, 3>& q,
+                           FieldView phi) {
   double before = 0, least = 1e300;
-  left_ = std::sqrt(reduce_sum(grid_.range(),
-                               [=](int i, int j, int k) { return double(r(i, j, k)) * double(r(i, j, k)); }));
+  left_ = size;
   for (int n = 0; n < kMostSteps; ++n) {
     // Where nothing but round-off is left the residual grows again.
     const bool done = !(left_ > tolerance) || left_ > 2 * least;
     const double now = done ? 0.0 : precondition(inverse_roots, r);
     least = std::min(least, left_);
-    if (n == 0) {
-      std::swap(direction_, z_);
-      for_each_cell(grid_.range(), [=](int i, int j, int k) { phi(i, j, k) = 0; });
-    }
+    if (n == 0 && !(now > 0)) for_each_cell(grid_.range(), [=](int i, int j, int k) { phi(i, j, k) = 0; });
     if (!(now > 0)) return n;
+    if (n == 0) std::swap(direction_, z_);
     const FieldView d = direction_.view();
     if (n > 0)
       for_each_cell(grid_.range(), [=, z = z_.view(), beta = static_cast<Real>(now / before)](
                                        int i, int j, int k) { d(i, j, k) = z(i, j, k) + beta * d(i, j, k); });
     boundaries_.fill_pressure(d, q, false);
     const double curvature = apply(faces);
-    if (!(curvature > 0)) return n;
-    const Real alpha = static_cast<Real>(now / curvature);
+    const Real alpha = curvature > 0 ? static_cast<Real>(now / curvature) : Real(0);
+    if (n > 0 && alpha == 0) return n;
     left_ = std::sqrt(sum_rows(
-        [=, image = image_.view()](int i, int j, int k) {
-          phi(i, j, k) += alpha * d(i, j, k);
+        [=, image = image_.view(), first = n == 0](int i, int j, int k) {
+          phi(i, j, k) = (first ? Real(0) : phi(i, j, k)) + alpha * d(i, j, k);
           r(i, j, k) -= alpha * image(i, j, k);
         },
         [=](int i, int j, int k) { return double(r(i, j, k)) * double(r(i, j, k)); }));

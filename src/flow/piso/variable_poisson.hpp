@@ -22,7 +22,7 @@ class VariablePoisson {
   /// it leaves the residual. Stops when the root of the sum of its squares falls below `tolerance` (units of
   /// rhs), or no more can be gained. Iterations.
   int solve(const std::array<ConstFieldView, 3>& faces, ConstFieldView inverse_roots, FieldView rhs,
-            double tolerance, const std::array<FieldView, 3>& q, FieldView phi);
+            double size, double tolerance, const std::array<FieldView, 3>& q, FieldView phi);
   /// sqrt of the sum of squares of what the last solution leaves
   double residual() const { return left_; }
 
