@@ -97,7 +97,7 @@ double least_traffic(const std::string& name) {
 
 void bench(const BenchOptions& options, const Note& tell) {
   if (options.threads > 0) set_thread_count(options.threads);
-  if (!options.only.empty()) {
+  if (!options.only.empty() && options.only != "flow") {
     if (options.only == "grains") bench_grains(kStandardCase, options.steps, tell);
     else bench_dem(options.only == "settled", tell);
     return;
@@ -139,6 +139,7 @@ void bench(const BenchOptions& options, const Note& tell) {
   tell(
       "\nThe limit is the time memory needs to deliver every field of a pass once; above 100 % fields stayed "
       "in cache.");
+  if (options.only == "flow") return;
   bench_jet(options.steps, tell);
   bench_dem(false, tell);
   bench_grains(kStandardCase, options.steps, tell);

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 namespace ejecta {
 namespace {
 
@@ -15,6 +17,25 @@ Body body_of(Shape shape, const Vec3& position) {
 Grid uniform(int n) {
   const Axis a = make_axis({-1.0, 1.0}, {n}, {});
   return Grid(a, a, a);
+}
+
+/// Of spheroids of 1 : 10 and 2 : 1, a disc and a sphere; a needle drags its own volume across.
+TEST(AddedMass, IsLambsOfEllipsoids) {
+  const auto of = [](const Vec3& semi) {
+    MassProperties m;
+    m.volume = 4.0 / 3 * M_PI * semi.prod();
+    for (int d = 0; d < 3; ++d) m.inertia(d, d) = 0.2 * m.volume * (semi.squaredNorm() - semi[d] * semi[d]);
+    AddedMass a = added_mass(m, 1.0);
+    a.mass /= m.volume;
+    return a;
+  };
+  EXPECT_LT((of({1, 1, 1}).mass - Vec3::Constant(0.5)).norm(), 1e-9);
+  EXPECT_LT(of({1, 1, 1}).inertia.norm(), 1e-9);
+  EXPECT_LT((of({2, 1, 1}).mass - Vec3(0.210, 0.704, 0.704)).norm(), 1e-3);
+  const AddedMass disc = of({1, 1, 0.002});
+  EXPECT_NEAR(disc.mass.z() * 4.0 / 3 * M_PI * 0.002, 8.0 / 3, 0.02);
+  EXPECT_NEAR(disc.inertia.x(), 16.0 / 45, 0.003);
+  EXPECT_NEAR(of({200, 1, 1}).mass.y(), 1.0, 1e-3);
 }
 
 TEST(ResolvedCoupling, ForceIsWhatTheWallsTookAndTorqueItsMoment) {
@@ -51,7 +72,7 @@ TEST(ResolvedCoupling, ForceIsWhatTheWallsTookAndTorqueItsMoment) {
     const Vec3 by_volume = 2.0 * volume * Vec3(3, 0, 9.81);
     Vec3 right = by_volume + Vec3(0, 2e-3 * n, -1e-3 * n);
     if (b == 1) {  // free: it begins as if something had held it
-      const double lambda = 2.0 * volume / (bodies[b].mass + 2.0 * volume);
+      const double added = 0.5 * 2.0 * volume, lambda = added / (bodies[b].mass + added);
       right = (1.0 - lambda) * right - lambda * bodies[b].mass * setup.gravity;
     }
     EXPECT_LT((loads[b].force - right).norm(), 1e-12);

@@ -305,6 +305,143 @@ motion = "fixed"
 }
 
 /// Unlike the force, which a balance would show.
+/// A tenth of the density of the water around it, and three times as wide as thick: what it accelerates of
+/// the water is more than ten times its own mass.
+TEST(Run, AFlatBodyRisesInWater) {
+  const Case c = parse_case(R"(
+[run]
+end_time = "60 ms"
+courant = 0.5
+[fluid]
+ideal_gas = false
+density = "1000 kg/m3"
+viscosity = "0.001 Pa s"
+[grid.x]
+points = ["-40 mm", "40 mm"]
+cells = [20]
+[grid.y]
+points = ["-40 mm", "40 mm"]
+cells = [20]
+[grid.z]
+points = ["0 mm", "60 mm"]
+cells = [30]
+[[material]]
+name = "foam"
+density = "100 kg/m3"
+[[body]]
+name = "plate"
+shape = "box"
+size = ["24 mm", "24 mm", "8 mm"]
+material = "foam"
+position = ["0.2 mm", "0.3 mm", "20 mm"]
+[output]
+report = false
+)",
+                            "plate");
+  const Result r = run(c);
+  const double rise = r.quantities["bodies"][0]["final_position_m"][2].get<double>() - 0.020;
+  // In ideal fluid, with the added mass of a square of that width, 0.4 rho w^3 (drag makes it less).
+  const double ideal = 0.5 * 9.81 * 900.0 / (100.0 + 0.4 * 24.0 / 8.0 * 1000.0) * 0.06 * 0.06;
+  EXPECT_GT(rise, 0.4 * ideal);
+  EXPECT_LT(rise, ideal);
+}
+
+/// The centre of a channel at Re_tau 2000 (Hoyas & Jimenez 2006: 24.1 to 24.4 times the friction velocity,
+/// which the driving force says), by 20 cells, the first in the logarithmic layer.
+TEST(Run, AChannelHasTheFrictionOfItsWalls) {
+  for (const char* model : {"k-epsilon", "k-omega-sst"}) {
+    const Case c = parse_case(fmt::format(R"(
+[run]
+end_time = "40 s"
+courant = 0.9
+[environment]
+gravity = ["0 m/s2", "0 m/s2", "0 m/s2"]
+[fluid]
+ideal_gas = false
+density = "1 kg/m3"
+viscosity = "0.0005 Pa s"
+[flow]
+turbulence = "{}"
+body_force = ["1 m/s2", "0 m/s2", "0 m/s2"]
+[grid.x]
+points = ["0 m", "0.4 m"]
+cells = [4]
+[grid.y]
+points = ["-1 m", "1 m"]
+cells = [20]
+[grid.z]
+points = ["0 m", "0.4 m"]
+cells = [4]
+[boundary.x_min]
+type = "periodic"
+[boundary.x_max]
+type = "periodic"
+[boundary.z_min]
+type = "periodic"
+[boundary.z_max]
+type = "periodic"
+[[initial]]
+velocity = ["20 m/s", "0 m/s", "0 m/s"]
+k = "3 m2/s2"
+epsilon = "5 m2/s3"
+[[probe]]
+name = "centre"
+position = ["0.2 m", "0 m", "0.2 m"]
+[output]
+report = false
+)",
+                                          model),
+                              "channel");
+    const double centre = run(c).quantities["probes"]["centre"]["velocity_x"].get<double>();
+    EXPECT_NEAR(centre, 24.25, 0.06 * 24.25) << model;
+  }
+}
+
+/// In steps of a hundred crossings of a cell by sound nothing grows out of what the pressure equation leaves.
+TEST(Run, SlowGasStaysSlow) {
+  const Case c = parse_case(R"toml(
+[run]
+end_time = "10 ms"
+time_step_max = "0.1 ms"
+[environment]
+gravity = ["0 m/s2", "0 m/s2", "0 m/s2"]
+[flow]
+solver = "compressible-piso"
+[grid.x]
+points = ["-15 mm", "15 mm"]
+cells = [24]
+[grid.y]
+points = ["-15 mm", "15 mm"]
+cells = [24]
+[grid.z]
+points = ["-15 mm", "15 mm"]
+cells = [24]
+[boundary.x_min]
+type = "pressure-outlet"
+[boundary.x_max]
+type = "pressure-outlet"
+[boundary.y_min]
+type = "pressure-outlet"
+[boundary.y_max]
+type = "pressure-outlet"
+[boundary.z_min]
+type = "pressure-outlet"
+[boundary.z_max]
+type = "pressure-outlet"
+[[initial]]
+velocity = ["= 1e-3*sin(400*y)", "0 m/s", "0 m/s"]
+[[probe]]
+name = "inside"
+position = ["7 mm", "3 mm", "4 mm"]
+[output]
+report = false
+)toml",
+                            "slow gas");
+  const auto probe = run(c).quantities["probes"]["inside"];
+  for (const char* d : {"x", "y", "z"})
+    EXPECT_LT(std::abs(probe[std::string("peak_velocity_") + d].get<double>()), 1.5e-3) << d;
+}
+
 TEST(Run, DragIsWithoutBuoyancy) {
   const auto body = [](double gravity) { return run(sphere_in_water(gravity)).quantities["bodies"][0]; };
   const auto still = body(0.0), heavy = body(-9.81);

@@ -97,7 +97,7 @@ void add_bench(CLI::App& app, Action& action) {
       ->check(CLI::Range(1, 100000).description(""))
       ->capture_default_str();
   command->add_option("--only", o->only, "Measure nothing else")
-      ->check(CLI::IsMember({"dem", "settled", "grains"}));
+      ->check(CLI::IsMember({"flow", "dem", "settled", "grains"}));
   command->footer("Example:\n  ejecta bench --threads 2\n  ejecta bench --threads 1 --only dem");
   command->callback([o, &action] {
     action = [o] {

@@ -16,6 +16,7 @@ void ResolvedCoupling::map(std::span<const Body> bodies, CutCells& cut) {
 void ResolvedCoupling::collect(std::span<const Body> bodies, const CutCells& cut, double dt,
                                std::span<Load> loads) {
   motion_.resize(bodies.size());
+  added_.resize(bodies.size());
   parts_.assign(bodies.size(), {});
   for (Load& l : loads) l = Load{};
   wetted_.assign(bodies.size(), 0.0);
@@ -30,22 +31,39 @@ void ResolvedCoupling::collect(std::span<const Body> bodies, const CutCells& cut
   }
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     const Body& body = bodies[b];
-    const double displaced = setup_.fluid_density * body.shape.mass_properties().volume;
+    const MassProperties& shape = body.shape.mass_properties();
+    const double displaced = setup_.fluid_density * shape.volume;
     loads[b].force = parts_[b].pressure + parts_[b].friction;
     if (wetted_[b] > 0.0) {
       loads[b].force += displaced * (setup_.body_force - setup_.gravity);
-      loads[b].torque -= 2.0 * setup_.viscosity * body.shape.mass_properties().volume * body.angular_velocity;
+      loads[b].torque -= 2.0 * setup_.viscosity * shape.volume * body.angular_velocity;
     }
     Before& m = motion_[b];
     if (!m.known) m.push = Load{-body.mass * setup_.gravity, Vec3::Zero()};  // it was held
     if (body.motion == Motion::free && wetted_[b] > 0.0) {
-      const double lambda = displaced / (body.mass + displaced);
-      loads[b].force += lambda * (m.push.force - loads[b].force);
-      loads[b].torque += lambda * (m.push.torque - loads[b].torque);
+      const AddedMass& with = accelerated_with(b, shape);
+      const auto lag = [&](const Vec3& before, Vec3& now, const Vec3& fluid, const Vec3& own) {
+        const Vec3 weight = fluid.array() / (own + fluid).array();
+        now += body.orientation * weight.cwiseProduct(body.orientation.conjugate() * (before - now));
+      };
+      lag(m.push.force, loads[b].force, with.mass, Vec3::Constant(body.mass));
+      lag(m.push.torque, loads[b].torque, with.inertia, body.inertia);
     }
     m.push = loads[b];
     m.known = true;
   }
+}
+
+/// At least what clings to a body however it moves: half of the fluid it displaces, which is all of a
+/// sphere's added mass, and in turning what it displaces.
+const AddedMass& ResolvedCoupling::accelerated_with(std::size_t body, const MassProperties& shape) {
+  AddedMass& a = added_[body];
+  if (a.mass.isZero()) {
+    a = added_mass(shape, setup_.fluid_density);
+    a.mass = a.mass.cwiseMax(0.5 * setup_.fluid_density * shape.volume);
+    a.inertia = a.inertia.cwiseMax(setup_.fluid_density * shape.inertia.diagonal());
+  }
+  return a;
 }
 
 /// Whether the sphere around a body reaches into the box.

@@ -2,6 +2,7 @@
 #include <span>
 #include <vector>
 
+#include "coupling/resolved/added_mass.hpp"
 #include "coupling/resolved/cut_map.hpp"
 #include "dem/body.hpp"
 #include "dem/loads.hpp"
@@ -37,11 +38,12 @@ class ResolvedCoupling {
   /// Fills cut.
   void map(std::span<const Body> bodies, CutCells& cut);
   /// Force and torque on every body over the last flow step of length dt: pressure and friction on its walls
-  /// and buoyancy, averaged over the steps before with the weight of the displaced fluid against that of the
-  /// body, lambda = rho V / (m + rho V): F += (1 - lambda) (F_now - F). The fluid answers an acceleration
-  /// within the step that follows, so that for a body lighter than its added mass the plain force grows
-  /// without bound from step to step; this one settles on the same value, and for ore in air lambda is 4e-4.
-  /// A body begins as if something had held it.
+  /// and buoyancy, averaged over the steps before with the weight of the added mass against that of the body,
+  /// lambda = M / (m + M) along and about each axis of the body: F += (1 - lambda) (F_now - F). The fluid
+  /// answers an acceleration within the step that follows, so that for a body lighter than its added mass the
+  /// plain force grows without bound from step to step. Where M is the added mass this one follows at once,
+  /// and it settles where the added mass is less than m + 2 M; for ore in air lambda is 2e-4. A body begins
+  /// as if something had held it.
   void collect(std::span<const Body> bodies, const CutCells& cut, double dt, std::span<Load> loads);
 
   const std::vector<ForceParts>& parts() const { return parts_; }
@@ -53,6 +55,7 @@ class ResolvedCoupling {
 
  private:
   bool inside(const Body& body) const;
+  const AddedMass& accelerated_with(std::size_t body, const MassProperties& shape);
 
   struct Before {
     Load push;  // what the body was given
@@ -63,7 +66,8 @@ class ResolvedCoupling {
   CutMap cut_map_;
   std::vector<ForceParts> parts_;
   std::vector<Before> motion_;
-  std::vector<double> wetted_;  // scratch, area of the walls of each body, m2
+  std::vector<AddedMass> added_;  // once a body was wet
+  std::vector<double> wetted_;    // scratch, area of the walls of each body, m2
 };
 
 }  // namespace ejecta

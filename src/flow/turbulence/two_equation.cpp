@@ -6,7 +6,9 @@
 #include "flow/sweep.hpp"
 #include "flow/turbulence/closures.hpp"
 #include "flow/turbulence/gradient.hpp"
+#include "flow/turbulence/grid_walls.hpp"
 #include "flow/turbulence/sources.hpp"
+#include "flow/turbulence/wall_cell.hpp"
 #include "flow/turbulence/wall_law.hpp"
 
 namespace ejecta {
@@ -87,7 +89,8 @@ struct ScalarOut {
 
 template <bool kSst, bool kRound>
 void transport(const Grid& grid, const ScalarFlux<kSst>& face, const std::array<ConstFieldView, 3>& u,
-               const TwoEquation::WallDistance& wall, ConstFieldView solid_distance, const ScalarOut& out) {
+               const GridWalls& walls, const TwoEquation::WallDistance& wall, ConstFieldView solid_distance,
+               const ScalarOut& out) {
   const Real most = kLargestViscosityRatio * face.nu;
   sweep<2>(grid, face, [&](int j, int k, Real* const(&balance)[2]) {
     const Real *b0 = balance[0], *b1 = balance[1], *inv_volume = face.m[0].inv_volume;
@@ -104,38 +107,50 @@ void transport(const Grid& grid, const ScalarFlux<kSst>& face, const std::array<
     const GradientRow gradient = gradient_row(grid, u, j, k);
     const ProductRow product = product_row(grid, face.value[0], face.value[1], j, k);
     const int nx = grid.nx();
-    const auto update = [=](auto axisymmetric, auto unfinished) {
+    const auto update = [=, &walls](auto axisymmetric, auto unfinished) {
       GradientRow row = gradient;
       if constexpr (!axisymmetric) row.radius = nullptr;
+      const auto finish = [=](int i, SourcePoint p) __attribute__((always_inline)) {
+        const auto [k1, s1] = advance_sources<kSst, kRound>(p, dt);
+        out_k[i] = unfinished ? k1 - p.k : positive_sum(p.k, k1 - p.k);
+        out_dissipation[i] =
+            unfinished ? s1 - p.dissipation : positive_sum(p.dissipation, s1 - p.dissipation);
+        const Real rate_of_strain = std::sqrt(p.strain2), kn = unfinished ? p.k : out_k[i],
+                   sn = unfinished ? p.dissipation : out_dissipation[i];
+        if constexpr (kSst) {
+          using namespace k_omega_sst;
+          const Real d = std::min(std::min(distance_x[i], distance_jk), from_solid[i]);
+          out_f1[i] = k_omega_sst::f1(kn, sn, nu, d, Real(2) * kSigmaW2 * product(i));
+          out_nut[i] = std::min(eddy_viscosity(kn, sn, rate_of_strain, f2(kn, sn, nu, d)), most);
+        } else {
+          out_nut[i] =
+              std::min(k_epsilon::eddy_viscosity(kn, sn, k_epsilon::longest_time(rate_of_strain)), most);
+        }
+      };
+      const auto point = [=](int i) __attribute__((always_inline)) {
+        const Real k0 = old_k[i], s0 = old_second[i], nut = eddy[i];
+        const VelocityGradient v = row(i);
+        const Real strain2 = strain_squared(v);
+        const Real by_volume = dt * inv_volume[i] * inv_jk;
+        const Real k_carried = k0 - by_volume * b0[i], s_carried = s0 - by_volume * b1[i];
+        SourcePoint p{k0, s0, k_carried, s_carried, strain2, nut * strain2, nut, Real(0), Real(0), Real(0)};
+        if constexpr (kSst) {
+          p.f1 = blending[i];
+          p.gradients = product(i);
+        }
+        if constexpr (kRound) p.stretching = vortex_stretching(v);
+        return p;
+      };
       for_each_lane(
-          0, nx, [=](int i) __attribute__((always_inline)) {
-            const Real k0 = old_k[i], s0 = old_second[i], nut = eddy[i];
-            const VelocityGradient v = row(i);
-            const Real strain2 = strain_squared(v);
-            const Real by_volume = dt * inv_volume[i] * inv_jk;
-            const Real k_carried = k0 - by_volume * b0[i], s_carried = s0 - by_volume * b1[i];
-            SourcePoint p{k0,  s0,      k_carried, s_carried, strain2, nut * strain2,
-                          nut, Real(0), Real(0),   Real(0)};
-            if constexpr (kSst) {
-              p.f1 = blending[i];
-              p.gradients = product(i);
-            }
-            if constexpr (kRound) p.stretching = vortex_stretching(v);
-            const auto [k1, s1] = advance_sources<kSst, kRound>(p, dt);
-            out_k[i] = unfinished ? k1 - k0 : positive_sum(k0, k1 - k0);
-            out_dissipation[i] = unfinished ? s1 - s0 : positive_sum(s0, s1 - s0);
-            const Real rate_of_strain = std::sqrt(strain2), kn = unfinished ? k0 : out_k[i],
-                       sn = unfinished ? s0 : out_dissipation[i];
-            if constexpr (kSst) {
-              using namespace k_omega_sst;
-              const Real d = std::min(std::min(distance_x[i], distance_jk), from_solid[i]);
-              out_f1[i] = k_omega_sst::f1(kn, sn, nu, d, Real(2) * kSigmaW2 * product(i));
-              out_nut[i] = std::min(eddy_viscosity(kn, sn, rate_of_strain, f2(kn, sn, nu, d)), most);
-            } else {
-              out_nut[i] =
-                  std::min(k_epsilon::eddy_viscosity(kn, sn, k_epsilon::longest_time(rate_of_strain)), most);
-            }
-          });
+          0, nx, [=](int i) __attribute__((always_inline)) { finish(i, point(i)); });
+      walls.for_each_in_row(j, k, [&](int i) {
+        SourcePoint p = point(i);
+        const WallShear shear = walls.shear(i, j, k, p.k, nu);
+        p.strain2 = shear.strain2;
+        p.produced = shear.produced;
+        p.stretching = Real(0);
+        finish(i, p);
+      });
     };
     using Yes = std::true_type;  // decided outside the loop: it would not vectorise
     using No = std::false_type;
@@ -192,36 +207,34 @@ void TwoEquation::measure_walls(const Boundaries& b) {
   }
 }
 
-/// Equilibrium values in the cells next to walls and the wall's eddy viscosity in the ghosts (Launder &
-/// Spalding 1974).
-void TwoEquation::apply_walls() {
-  for (int face = 0; face < 6; ++face) {
-    if (!is_wall_[face]) continue;
-    const int d = face / 2, n = grid_.n(d), cell = face % 2 ? n - 1 : 0, ghost = face % 2 ? n : -1;
-    const Metrics m = grid_.metrics(d);
-    const Real y = Real(0.5) * m.width[cell];
-    const int na = grid_.n((d + 1) % 3), nb = grid_.n((d + 2) % 3);
-    const auto at = [&](Field& f, int a, int bb, int along) -> Real& {
-      return d == 0 ? f(along, a, bb) : d == 1 ? f(bb, along, a) : f(a, bb, along);
-    };
-    for_each_index(nb, [&](int bb) {
-      for (int a = 0; a < na; ++a) {
-        const Real k = at(k_, a, bb, cell);
-        const Real y_plus = wall_law::kQuarterCmu * std::sqrt(k) * y / nu_;
-        const Real on_wall = nu_ * (y_plus / wall_law::u_plus(y_plus, Real(0)) - Real(1));
-        at(nut_, a, bb, ghost) = Real(2) * on_wall - at(nut_, a, bb, cell);
-        at(dissipation_, a, bb, cell) = model_ == TwoEquationModel::k_epsilon
-                                            ? wall_law::dissipation(k, y, nu_)
-                                            : wall_law::specific_dissipation(k, y, nu_);
-      }
+/// Equilibrium of dissipation and eddy viscosity in the cells next to walls, that of the nearest in corners,
+/// and in the ghosts what makes the shear that of the law of the wall (Launder & Spalding 1974).
+void TwoEquation::apply_walls(const GridWalls& walls) {
+  const bool sst = model_ == TwoEquationModel::k_omega_sst;
+  walls.for_each_cell([&](int i, int j, int k) {
+    const Real kn = k_(i, j, k);
+    Real dissipation = 0;
+    walls.for_each_wall(i, j, k, [&](int, Real y, Real) {
+      dissipation = std::max(
+          dissipation, sst ? wall_law::specific_dissipation(kn, y, nu_) : wall_law::dissipation(kn, y, nu_));
     });
-  }
+    dissipation_(i, j, k) = dissipation;
+    nut_(i, j, k) = sst ? wall_eddy_viscosity<true>(kn, dissipation, nu_)
+                        : wall_eddy_viscosity<false>(kn, dissipation, nu_);
+    walls.for_each_wall(i, j, k, [&](int face, Real y, Real speed) {
+      const Real on_wall = wall_law::conductance(speed, y, nu_, kn, Real(0)) * y - nu_;
+      std::array<int, 3> ghost{i, j, k};
+      ghost[static_cast<std::size_t>(face / 2)] += face % 2 ? 1 : -1;
+      nut_(ghost[0], ghost[1], ghost[2]) = Real(2) * on_wall - nut_(i, j, k);
+    });
+  });
 }
 
 void TwoEquation::advance(const Boundaries& b, const std::array<ConstFieldView, 3>& u,
                           const std::array<FieldView, 3>& q, const CutCells& cut, Real dt,
                           const IncrementSmoother* smoother) {
   if (wall_distance_[0].empty()) measure_walls(b);
+  const GridWalls walls(grid_, is_wall_, u);
   if (model_ == TwoEquationModel::k_omega_sst) solid_distance_.measure(cut);
   b.fill_turbulence(k_.view(), dissipation_.view(), q);
   const std::array<ConstFieldView, 3> faces{q[0], q[1], q[2]};
@@ -235,7 +248,7 @@ void TwoEquation::advance(const Boundaries& b, const std::array<ConstFieldView, 
                                {grid_.metrics(0), grid_.metrics(1), grid_.metrics(2)},
                                nu_,
                                dt};
-    transport<sst, round>(grid_, face, u, wall_distance_, solid_distance_.view(), out);
+    transport<sst, round>(grid_, face, u, walls, wall_distance_, solid_distance_.view(), out);
   };
   if (model_ == TwoEquationModel::k_omega_sst) run(std::true_type{}, std::false_type{});
   else if (round_jet_) run(std::false_type{}, std::true_type{});
@@ -253,7 +266,7 @@ void TwoEquation::advance(const Boundaries& b, const std::array<ConstFieldView, 
   finish_cut_cells(cut);
   b.fill_zero_gradient(nut_.view());
   if (model_ == TwoEquationModel::k_omega_sst) b.fill_zero_gradient(f1_.view());
-  apply_walls();
+  apply_walls(walls);
 }
 
 }  // namespace ejecta

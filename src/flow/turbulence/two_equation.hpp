@@ -11,6 +11,7 @@
 namespace ejecta {
 
 enum class TwoEquationModel { k_epsilon, k_omega_sst };
+class GridWalls;
 
 /// Transport of k and epsilon (or omega) with an incompressible flow, once a step: limited upwind convection
 /// in time-centred (Lax-Wendroff) form, explicit diffusion, implicit sinks, so that both stay positive.
@@ -35,7 +36,7 @@ class TwoEquation {
   }
 
  private:
-  void apply_walls();
+  void apply_walls(const GridWalls& walls);
   /// Cut cells: what passes their open faces, and walls with the law of the wall.
   void advance_cut_cells(const CutCells& cut, const std::array<ConstFieldView, 3>& u,
                          const std::array<FieldView, 3>& q, Real dt, bool increments);
