@@ -18,6 +18,8 @@ constexpr float kSharp = 0.01f;
 constexpr double kSmoothTurn = 0.3, kSharpTurn = 0.6;
 /// To what part of a cell points of the surface are known.
 constexpr double kExact = 1e-3;
+/// Of the widest cell: a point so near to a surface lies on it.
+constexpr double kOnSurface = 1e-7;
 /// Open up to round-off.
 constexpr float kOpenRoundOff = 1e-5f;
 
@@ -136,7 +138,11 @@ void CutMap::measure(Region& r) {
           widest, grid_.axis(d).width[static_cast<std::size_t>(r.low[static_cast<std::size_t>(d)] + m)]);
   const Vec3 shift = r.shift;
   const Body& body = *r.body;
-  const auto distance = [&](const Vec3& x) { return body.signed_distance(x - shift); };
+  // What lies on a surface but for round-off lies on it, on whichever side the round-off is.
+  const auto distance = [&, hair = kOnSurface * widest](const Vec3& x) {
+    const double d = body.signed_distance(x - shift);
+    return std::abs(d) < hair ? 0.0 : d;
+  };
   const int nx = r.n[0] + 1, ny = r.n[1] + 1, nz = r.n[2] + 1;
   r.node.resize(static_cast<std::size_t>(nx) * ny * nz);
   for_each_index(nz, [&](int k) {
@@ -211,7 +217,9 @@ CutMap::Tip CutMap::find_tip(const Region& r, const std::array<int, 3>& node, st
     point[int(b)] += double(y) * size[int(b)];
     return Vec3(r.body->orientation * r.body->shape.gradient(r.body->to_body(point)));
   };
-  const Vec3 normal0 = normal(x0, y0), normal1 = normal(x1, y1);
+  // A hair towards each other: a point on an edge of the body has the normal of the side that lies between.
+  const float hair_x = float(kExact) * (x1 - x0), hair_y = float(kExact) * (y1 - y0);
+  const Vec3 normal0 = normal(x0 + hair_x, y0 + hair_y), normal1 = normal(x1 - hair_x, y1 - hair_y);
   const double sharp =
       std::clamp((normal0.cross(normal1).norm() - kSmoothTurn) / (kSharpTurn - kSmoothTurn), 0.0, 1.0);
   if (!(sharp > 0.0)) return {};
