@@ -39,9 +39,11 @@ void CaseTree::set(const std::vector<Assignment>& assignments) {
     Node parsed = parse_toml(sources.back(), problems);
     if (parsed.children.size() != 1) continue;
     const Place place = parsed.children.front().place;
-    if (const std::string refusal = put_value(root, a.path, std::move(parsed.children.front()));
-        !refusal.empty())
-      problems.push_back({.key = a.path, .what = refusal, .place = place});
+    if (auto refusal = put_value(root, a.path, std::move(parsed.children.front()))) {
+      refusal->key = a.path;
+      refusal->place = place;
+      problems.push_back(std::move(*refusal));
+    }
   }
   if (problems.empty()) resolve_case(root, name_, problems);
   std::erase_if(problems, [&](const Problem& p) {  // the rest is told when the case is used
@@ -66,7 +68,7 @@ void CaseTree::remove(const std::string& path) {
 Case CaseTree::checked(std::vector<Problem>* warnings, std::optional<Scene>* scene) const {
   std::vector<Problem> problems;
   Case c = resolve_case(
-      root_, name_, problems, [scene](const Case& of) { return check_bodies(of, scene); }, warnings);
+      root_, name_, problems, [scene](const Case& of) { return check_set_up(of, scene); }, warnings);
   if (!problems.empty()) throw CaseError(problems);
   return c;
 }

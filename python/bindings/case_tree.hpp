@@ -34,6 +34,7 @@ class CaseTree {
   Case as_it_stands() const;
 
   const std::string& name() const { return name_; }
+  const Node& root() const { return root_; }
 
  private:
   CaseTree(Node root, std::string name) : root_(std::move(root)), name_(std::move(name)) {}

@@ -120,6 +120,16 @@ class Case:
         case._changes = {}
         return case
 
+    @classmethod
+    def parse(cls, text: str, name: str = "case.toml") -> Case:
+        """The case of the text of a case file; `name` stands for the file in messages, and files that it names are relative
+        to the folder of that."""
+        case = cls.__new__(cls)
+        case._tree = _core.CaseTree(text, name)
+        case._file = None
+        case._changes = {}
+        return case
+
     def copy(self) -> Case:
         """A case of its own with the same values."""
         other = Case.__new__(Case)

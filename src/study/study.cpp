@@ -163,7 +163,7 @@ class Setup {
   }
   void refuse(Problem p) { problems_.push_back(std::move(p)); }
   void throw_if_any() const {
-    if (!problems_.empty()) throw InputError(render(problems_));
+    if (!problems_.empty()) throw CaseError(problems_);
   }
 
   void read_variable(std::size_t n) {
@@ -317,8 +317,11 @@ class Setup {
       Node root = plain;
       std::vector<Problem> found;
       for (std::size_t d = 0; d < values.size(); ++d)
-        if (const std::string refusal = put_value(root, variables_[d].key, values[d]); !refusal.empty())
-          found.push_back({.key = variables_[d].key, .what = refusal, .place = values[d].place});
+        if (auto refusal = put_value(root, variables_[d].key, values[d])) {
+          refusal->key = variables_[d].key;
+          refusal->place = values[d].place;
+          found.push_back(std::move(*refusal));
+        }
       Case c = resolve_case(root, base_.path, found, further_);
       if (found.empty()) {
         Json labels = Json::object();
