@@ -133,13 +133,13 @@ void bind_case(py::module_& m) {
       .def_static("load", &CaseTree::load, py::arg("path"))
       .def(
           "set",
-          [](CaseTree& tree, const std::vector<std::array<std::string, 3>>& list) {
+          [](CaseTree& tree,
+             const std::vector<std::tuple<std::string, std::optional<std::string>, std::string>>& list) {
             std::vector<CaseTree::Assignment> assignments;
             for (const auto& [path, value, written] : list) assignments.push_back({path, value, written});
             tree.set(assignments);
           },
           py::arg("assignments"))
-      .def("remove", &CaseTree::remove, py::arg("path"))
       .def("get", &get, py::arg("path"))
       .def("check", &check, py::arg("threads") = 0)
       .def("solver", [](const CaseTree& tree) { return word(tree.as_it_stands().flow.solver); })

@@ -75,6 +75,10 @@ def _directory(kind, case, out):
     return Path(out if out is not None else f"{Path(case.name).stem}.{kind}")
 
 
+def _has_error(said):
+    return any("error: " in line for line in said)
+
+
 def _error_words(said):
     """What went wrong, without the progress before it."""
     start = next((n for n, line in enumerate(said) if "error: " in line), 0)
@@ -93,7 +97,8 @@ def _carry_out(kind, case, out, options, overwrite):
         with process.stderr:
             for line in process.stderr:
                 said.append(line.rstrip("\n"))
-                note(said[-1])
+                if not _has_error(said):  # which is raised
+                    note(said[-1])
         process.wait()
     except KeyboardInterrupt:  # what is done stays
         process.terminate()

@@ -14,6 +14,7 @@ import sys
 import threading
 import time
 import unittest
+import unittest.mock
 import urllib.request
 from pathlib import Path
 
@@ -53,7 +54,8 @@ COSTS = ("wall_time_s", "cell_steps_per_s", "operators", "threads")  # of a resu
 
 
 def physics(quantities):
-    return {name: value for name, value in quantities.items() if name not in COSTS}
+    """Without what it cost, and how the case was written."""
+    return {name: value for name, value in quantities.items() if name not in (*COSTS, "inputs")}
 
 
 def place(name):
@@ -239,6 +241,17 @@ class Cases(unittest.TestCase):
         with self.assertRaises(ejecta.CaseError):
             del case["valve.durattion"]
         self.assertEqual(case["valve.duration"], ejecta.Case.load(small)["valve.duration"])
+
+    def test_none_is_the_default(self):
+        case = short()
+        case.update({"body.particle.shape": "sphere", "body.particle.diameter": "12 mm", "body.particle.size": None,
+                     "body.particle.cluster": None})
+        self.assertEqual(ejecta.check(case)["bodies"][0]["shape"], "sphere")
+        duration = case["valve.duration"]
+        for wrong in ({"valve.duration": None, "valve.duratoin": None}, {"valve.duration": None, "valve.rise_time": "soon"}):
+            with self.assertRaises(ejecta.CaseError):
+                case.update(wrong)
+            self.assertEqual(case["valve.duration"], duration, "all or none")
 
     def test_bits_of_numbers(self):
         case = short()
@@ -516,10 +529,9 @@ class CommandLine(unittest.TestCase):
         (store / "kept").mkdir(parents=True)
         (store / "jet-1.h5").write_bytes(b"0" * 1000)
         (store / "thesis.txt").write_text("not ours")
-        self.addCleanup(os.environ.__setitem__, "EJECTA_CACHE", os.environ.get("EJECTA_CACHE", ""))
-        os.environ["EJECTA_CACHE"] = str(store)
-        self.assertEqual(ejecta.cache(), [store / "jet-1.h5"])
-        self.assertEqual(ejecta.clear_cache(), 1)
+        with unittest.mock.patch.dict(os.environ, EJECTA_CACHE=str(store)):
+            self.assertEqual(ejecta.cache(), [store / "jet-1.h5"])
+            self.assertEqual(ejecta.clear_cache(), 1)
         self.assertEqual(sorted(file.name for file in store.iterdir()), ["kept", "thesis.txt"])
 
     def test_check_looks_at_the_runs_of_a_study_and_the_parts_of_a_campaign(self):

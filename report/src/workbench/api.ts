@@ -115,10 +115,10 @@ async function post<T>(path: string, body: object, signal?: AbortSignal): Promis
 /** The address of a file of a job. */
 export const fileOf = (job: string, file: string): string => `/files/${[...job.split("/"), ...file.split("/")].map(encodeURIComponent).join("/")}`;
 
-/** What somebody calls a thing, as the name of a file that the server takes: what it does not take becomes a dash. */
+/** What somebody calls a thing, as the name of a file that the server takes: what it does not take is left out. */
 export function fileName(called: string, extension: string): string {
   const stem = called.trim().replace(new RegExp(`\\${extension}$`, "i"), "");
-  return stem.replace(/[^\p{L}\p{N} _.-]+/gu, "-").replace(/^[-.]+|-+$/g, "").slice(0, 60) + extension;
+  return stem.replace(/[^\p{L}\p{N} _.-]+/gu, " ").replace(/ +/g, " ").replace(/^[ .-]+| +$/g, "").slice(0, 60) + extension;
 }
 
 export const api = {
