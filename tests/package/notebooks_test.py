@@ -1,14 +1,16 @@
-"""The notebooks as a user has them: notebooks_test.py BUILD SOURCE SCRATCH executes those that were installed, from another
-folder and with an empty home, once by an installation in a folder of its own and once by an environment of pip. Nothing
-of the source or of another build is in use."""
+"""The notebooks as a user has them: notebooks_test.py BUILD SOURCE executes those that were installed, outside the source
+and with an empty home, once by an installation in a folder of its own and once by an environment of pip. Nothing of the
+source is in use."""
 
 import os
 import pathlib
 import shutil
 import subprocess
 import sys
+import tempfile
 
-build, source, scratch = (pathlib.Path(p).resolve() for p in sys.argv[1:])
+build, source = (pathlib.Path(p).resolve() for p in sys.argv[1:])
+scratch = pathlib.Path(tempfile.mkdtemp()).resolve()
 python = "/usr/bin/python3"
 
 
@@ -17,7 +19,6 @@ def run(*command, **options):
     return subprocess.run([str(word) for word in command], check=True, **options)
 
 
-shutil.rmtree(scratch, ignore_errors=True)
 prefix, elsewhere, home = (scratch / name for name in ("prefix", "elsewhere", "home"))
 for folder in (elsewhere, home):
     folder.mkdir(parents=True)
