@@ -77,10 +77,17 @@ export class CaseView {
   }
 
   private change(path: string, value: string | null): void {
+    this.changeAll([[path, value]]);
+  }
+
+  /** All that belongs together, checked once. */
+  private changeAll(values: [path: string, value: string | null][]): void {
     this.edits = this.edits.then(async () => {
       try {
-        const { text } = value === null ? await api.unset(this.text.value, path) : await api.set(this.text.value, path, value);
-        this.text.value = text;
+        for (const [path, value] of values) {
+          const { text } = value === null ? await api.unset(this.text.value, path) : await api.set(this.text.value, path, value);
+          this.text.value = text;
+        }
         await this.check();
       } catch (error) {
         this.say((error as Error).message);
@@ -217,8 +224,8 @@ export class CaseView {
     const said = this.text.value.replace(/#.*$/gm, "");
     const own = title?.text === body.text ? 2 : 1; // the title and the name itself
     if (said.split(body.text).length - 1 > own || said.includes(`body.${old}.`)) return;
-    this.change("body.0.name", JSON.stringify(name));
-    if (title?.given && title.text.includes(old)) this.change("run.title", JSON.stringify(name));
+    const called = JSON.stringify(name);
+    this.changeAll([["body.0.name", called], ...(title?.given && title.text.includes(old) ? [["run.title", called] as [string, string]] : [])]);
   }
 
   /** Dents that the grid cannot see are filled, no larger ones than it takes; `size`: of the body, in the unit of its file. */
@@ -242,10 +249,10 @@ export class CaseView {
   async useShape(file: File): Promise<void> {
     try {
       const { name, extent } = await api.upload(file, this.name);
-      for (const [path, value] of this.shapes.take(name, extent)) this.change(path, value);
+      this.changeAll(this.shapes.take(name, extent));
       await this.edits;
       const left = (this.judgement?.problems ?? []).filter((p) => p.severity === "error" && p.key.startsWith("body.0.") && p.key !== "body.0.fit_error" && this.judgement?.values?.[p.key]?.given);
-      for (const { key } of left) this.change(key, null);
+      if (left.length) this.changeAll(left.map(({ key }) => [key, null]));
       await this.edits;
       this.rename(name.replace(/\.stl$/i, ""));
       await this.simplify(name, Math.max(...extent));
