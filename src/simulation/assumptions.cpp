@@ -69,11 +69,10 @@ std::vector<output::Input> inputs(const Case& original) {
         if (!c.given.contains(path) || path == "run.title" || key.name == "name") continue;
         const auto* number = std::get_if<double*>(&key.slot);
         const bool supply = number && key.dimension == Dimension::pressure_absolute && s.name == "valve";
-        list.push_back(
-            {key.help,
-             supply ? format_quantity(**number - c.environment.pressure, Dimension::pressure_gauge)
-                    : plain(value_text(key)),
-             path});
+        list.push_back({key.help,
+                        supply ? format_quantity(**number - c.environment.pressure, Dimension::pressure_gauge)
+                               : plain(value_text(key)),
+                        path});
       }
     }
   }
