@@ -405,7 +405,7 @@ except KeyboardInterrupt:
             ejecta.run(BALL)
             sizes.append(resident())
         half = len(sizes) // 2
-        self.assertLess(sizes[-1] - sizes[half], 1 << 20, sizes)
+        self.assertLess(max(sizes[half:]) - max(sizes[:half]), 1 << 20, sizes)  # from run to run it wavers by some MB
 
     def test_pandas(self):
         try:
