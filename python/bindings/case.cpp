@@ -4,7 +4,6 @@
 #include "base/units.hpp"
 #include "bindings.hpp"
 #include "case/documented.hpp"
-#include "case/explain.hpp"
 #include "case/find_key.hpp"
 #include "case/load.hpp"
 #include "case/schema.hpp"
@@ -12,6 +11,7 @@
 #include "case_tree.hpp"
 #include "simulation/archive.hpp"
 #include "simulation/forecast.hpp"
+#include "workflow/studies.hpp"
 
 namespace ejecta::python {
 namespace {
@@ -102,19 +102,25 @@ py::list schema(const std::string& solver) {
   return all;
 }
 
-/// What `ejecta check` prints, the same for programs, and the warnings.
-py::tuple check(const CaseTree& tree) {
+/// What `ejecta check` prints, and the same for programs.
+py::tuple check(const CaseTree& tree, int threads) {
   std::string report;
   nlohmann::ordered_json json;
   {
     const py::gil_scoped_release others_may_run;
-    const ThreadBudget as_before(0);
+    const ThreadBudget as_before(threads);
     std::vector<Problem> warnings;
     std::optional<Scene> scene;
     const Case c = tree.checked(&warnings, &scene);
-    const double bandwidth = measured_bandwidth();
-    json = check_json(c, *scene, warnings, bandwidth);
-    report = check_report(c, *scene, warnings, bandwidth);
+    if (c.study.enabled) check_study(tree.root(), c);
+    if (c.campaign.enabled) {
+      report = campaign_checked(c);
+      json = {{"case", c.path}, {"problems", nlohmann::ordered_json::array()}};
+    } else {
+      const double bandwidth = measured_bandwidth();
+      json = check_json(c, *scene, warnings, bandwidth);
+      report = check_report(c, *scene, warnings, bandwidth);
+    }
   }
   return py::make_tuple(report, as_object(json));
 }
@@ -127,21 +133,20 @@ void bind_case(py::module_& m) {
       .def_static("load", &CaseTree::load, py::arg("path"))
       .def(
           "set",
-          [](CaseTree& tree, const std::vector<std::array<std::string, 3>>& list) {
+          [](CaseTree& tree,
+             const std::vector<std::tuple<std::string, std::optional<std::string>, std::string>>& list) {
             std::vector<CaseTree::Assignment> assignments;
             for (const auto& [path, value, written] : list) assignments.push_back({path, value, written});
             tree.set(assignments);
           },
           py::arg("assignments"))
-      .def("remove", &CaseTree::remove, py::arg("path"))
       .def("get", &get, py::arg("path"))
-      .def("check", &check)
+      .def("check", &check, py::arg("threads") = 0)
       .def("solver", [](const CaseTree& tree) { return word(tree.as_it_stands().flow.solver); })
       .def("toml", [](const CaseTree& tree) { return input_of(tree.checked()); })
       .def("copy", [](const CaseTree& tree) { return CaseTree(tree); })
       .def_property_readonly("name", &CaseTree::name);
   m.def("schema", &schema, py::arg("solver"));
-  m.def("explain", &explain, py::arg("topic"));
 }
 
 }  // namespace ejecta::python

@@ -16,6 +16,23 @@
 
 namespace ejecta::python {
 
+namespace {
+
+/// Takes a key out of the tree, if it is there.
+void remove(Node& root, const std::string& path) {
+  std::vector<std::string> parts = split_path(path);
+  const std::string key = parts.back();
+  parts.pop_back();
+  Node* node = &root;
+  for (const std::string& part : parts) {
+    if (!node) return;
+    node = node->is_list() ? const_cast<Node*>(element(*node, part)) : node->find(part);
+  }
+  if (node) std::erase_if(node->children, [&](const Node& child) { return child.key == key; });
+}
+
+}  // namespace
+
 CaseTree::CaseTree(const std::string& text, const std::string& name) : name_(name) {
   check_text(text, name);
   std::vector<Problem> problems;
@@ -34,14 +51,20 @@ void CaseTree::set(const std::vector<Assignment>& assignments) {
   std::vector<Problem> problems;
   std::vector<std::shared_ptr<const Source>> sources;
   for (const Assignment& a : assignments) {
+    if (!a.value) {
+      remove(root, a.path);
+      continue;
+    }
     const std::string key = split_path(a.path).back();
-    sources.push_back(std::make_shared<Source>(Source{a.written, key + " = " + a.value}));
+    sources.push_back(std::make_shared<Source>(Source{a.written, key + " = " + *a.value}));
     Node parsed = parse_toml(sources.back(), problems);
     if (parsed.children.size() != 1) continue;
     const Place place = parsed.children.front().place;
-    if (const std::string refusal = put_value(root, a.path, std::move(parsed.children.front()));
-        !refusal.empty())
-      problems.push_back({.key = a.path, .what = refusal, .place = place});
+    if (auto refusal = put_value(root, a.path, std::move(parsed.children.front()))) {
+      refusal->key = a.path;
+      refusal->place = place;
+      problems.push_back(std::move(*refusal));
+    }
   }
   if (problems.empty()) resolve_case(root, name_, problems);
   std::erase_if(problems, [&](const Problem& p) {  // the rest is told when the case is used
@@ -51,22 +74,10 @@ void CaseTree::set(const std::vector<Assignment>& assignments) {
   root_ = std::move(root);
 }
 
-void CaseTree::remove(const std::string& path) {
-  std::vector<std::string> parts = split_path(path);
-  const std::string key = parts.back();
-  parts.pop_back();
-  Node* node = &root_;
-  for (const std::string& part : parts) {
-    if (!node) break;
-    node = node->is_list() ? const_cast<Node*>(element(*node, part)) : node->find(part);
-  }
-  if (node) std::erase_if(node->children, [&](const Node& child) { return child.key == key; });
-}
-
 Case CaseTree::checked(std::vector<Problem>* warnings, std::optional<Scene>* scene) const {
   std::vector<Problem> problems;
   Case c = resolve_case(
-      root_, name_, problems, [scene](const Case& of) { return check_bodies(of, scene); }, warnings);
+      root_, name_, problems, [scene](const Case& of) { return check_set_up(of, scene); }, warnings);
   if (!problems.empty()) throw CaseError(problems);
   return c;
 }

@@ -19,14 +19,14 @@ class CaseTree {
   CaseTree(const std::string& text, const std::string& name);
   static CaseTree load(const std::string& path);
 
-  /// Sets keys, each given as TOML ("valve.duration", "\"8 ms\"") with what the user wrote, for messages. All
-  /// or none: throws CaseError with what is wrong with the values.
+  /// Sets keys, each given as TOML ("valve.duration", "\"8 ms\"") with what the user wrote, for messages;
+  /// without a value: back to its default. All or none: throws CaseError with what is wrong with the values.
   struct Assignment {
-    std::string path, value, written;
+    std::string path;
+    std::optional<std::string> value;
+    std::string written;
   };
   void set(const std::vector<Assignment>& assignments);
-  /// Back to its default.
-  void remove(const std::string& path);
 
   /// With all that a run would check; throws CaseError.
   Case checked(std::vector<Problem>* warnings = nullptr, std::optional<Scene>* scene = nullptr) const;
@@ -34,6 +34,7 @@ class CaseTree {
   Case as_it_stands() const;
 
   const std::string& name() const { return name_; }
+  const Node& root() const { return root_; }
 
  private:
   CaseTree(Node root, std::string name) : root_(std::move(root)), name_(std::move(name)) {}

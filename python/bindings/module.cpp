@@ -27,4 +27,5 @@ PYBIND11_MODULE(_core, m) {
   python::bind_case(m);
   python::bind_run(m);
   python::bind_shape(m);
+  python::bind_tools(m);
 }

@@ -3,13 +3,13 @@
 #include <ostream>
 
 #include "base/file_lock.hpp"
-#include "base/stopwatch.hpp"
 #include "bindings.hpp"
 #include "case_tree.hpp"
 #include "output/paraview_view.hpp"
 #include "output/report.hpp"
 #include "output/results_table.hpp"
 #include "output/verdict.hpp"
+#include "simulation/jet_sweep.hpp"
 #include "workflow/watched_run.hpp"
 
 namespace ejecta::python {
@@ -19,52 +19,6 @@ namespace {
 struct Progress {
   double time = 0.0, dt = 0.0, busy_until = 0.0;
   std::int64_t step = 0, cells = 0;
-};
-
-/// What Python may do while a run goes: look on after each step, and end it by ^C, by True from the callback
-/// or by an exception there, which is raised again once the run has left its checkpoint.
-class Onlooker {
- public:
-  explicit Onlooker(std::optional<py::object> callback) : callback_(std::move(callback)) {}
-
-  void observe(const Moment& m) {
-    if (!callback_ || stop_) return;
-    const py::gil_scoped_acquire python;
-    try {
-      const py::object answer = (*callback_)(Progress{m.time, m.dt, m.busy_until, m.step, m.model.cells()});
-      stop_ = answer.ptr() == Py_True;
-    } catch (py::error_already_set& e) {
-      keep(e);
-    }
-  }
-
-  bool stop() {
-    constexpr double kBetweenLooks = 0.05;  // s; the interpreter is asked so seldom that it costs nothing
-    if (const double now = wall_seconds(); !stop_ && now - looked_ > kBetweenLooks) {
-      looked_ = now;
-      const py::gil_scoped_acquire python;
-      if (PyErr_CheckSignals() != 0) {
-        py::error_already_set e;
-        keep(e);
-      }
-    }
-    return stop_;
-  }
-
-  void rethrow() {
-    if (error_) throw py::error_already_set(std::move(*error_));
-  }
-
- private:
-  void keep(py::error_already_set& e) {
-    error_.emplace(std::move(e));
-    stop_ = true;
-  }
-
-  std::optional<py::object> callback_;
-  std::optional<py::error_already_set> error_;
-  bool stop_ = false;
-  double looked_ = wall_seconds();
 };
 
 py::dict table_of(output::HistoryTable&& table) {
@@ -110,19 +64,30 @@ py::dict as_dict(Result&& r) {
   return d;
 }
 
+/// Shows a moment of a run to the callback.
+void show(Onlooker& onlooker, const Moment& m) {
+  if (!onlooker.looks_on()) return;
+  const py::gil_scoped_acquire python;
+  onlooker.show(Progress{m.time, m.dt, m.busy_until, m.step, m.model.cells()});
+}
+
+/// The case, with what is unlikely to be meant told.
+Case checked(const CaseTree& tree, const Note& note) {
+  std::vector<Problem> warnings;
+  Case c = tree.checked(&warnings);
+  for (const Problem& p : warnings) note(render(p));
+  return c;
+}
+
 /// `kind`: "run" or "jet".
 py::dict run_case(const CaseTree& tree, const std::string& kind, std::optional<std::string> directory,
                   bool overwrite, bool resume, int threads, std::optional<py::object> callback, bool fields,
                   const std::string& command, const py::object& note) {
   Onlooker onlooker(std::move(callback));
   Context context{.threads = threads,
-                  .observe = [&](const Moment& m) { onlooker.observe(m); },
+                  .observe = [&](const Moment& m) { show(onlooker, m); },
                   .stop = [&] { return onlooker.stop(); },
-                  .note =
-                      [&](const std::string& line) {
-                        const py::gil_scoped_acquire python;
-                        note(line);
-                      },
+                  .note = told_to(note),
                   .keep_fields = fields};
   if (directory)
     context.files = RunFiles{.directory = *directory,
@@ -134,7 +99,8 @@ py::dict run_case(const CaseTree& tree, const std::string& kind, std::optional<s
   {
     const py::gil_scoped_release others_may_run;
     const bool jet = kind == "jet";
-    const JetOrder order = jet ? jet_of(tree.checked()) : JetOrder{tree.checked()};
+    const Case c = checked(tree, context.note);
+    const JetOrder order = jet ? jet_of(c) : JetOrder{c};
     const RunOfCase compute = [&](const Case& c, const Context& in) {
       return jet ? run_jet(c, order.kept_at, in) : run(c, in);
     };
@@ -149,7 +115,43 @@ py::dict run_case(const CaseTree& tree, const std::string& kind, std::optional<s
   return as_dict(std::move(result));
 }
 
+/// Of `ejecta jet --sweep`: result.json.
+py::object sweep(const CaseTree& tree, std::optional<std::string> directory, bool overwrite, int threads,
+                 const std::string& command, const std::vector<std::string>& overrides,
+                 const py::object& note) {
+  Onlooker onlooker;
+  Context context{.threads = threads, .stop = [&] { return onlooker.stop(); }, .note = told_to(note)};
+  if (directory) context.files = RunFiles{*directory, overwrite, false, command, command, overrides};
+  std::optional<nlohmann::ordered_json> result;
+  {
+    const py::gil_scoped_release others_may_run;
+    result = sweep_jet(jet_of(checked(tree, context.note)).jet, context);
+  }
+  onlooker.rethrow();
+  return result ? as_object(*result) : py::none();
+}
+
 }  // namespace
+
+bool Onlooker::stop() {
+  constexpr double kBetweenLooks = 0.05;  // s; the interpreter is asked so seldom that it costs nothing
+  if (const double now = wall_seconds(); !stop_ && now - looked_ > kBetweenLooks) {
+    looked_ = now;
+    const py::gil_scoped_acquire python;
+    if (PyErr_CheckSignals() != 0) {
+      py::error_already_set e;
+      keep(e);
+    }
+  }
+  return stop_;
+}
+
+Note told_to(const py::object& callable) {
+  return [&callable](const std::string& line) {
+    const py::gil_scoped_acquire python;
+    callable(line);
+  };
+}
 
 void bind_run(py::module_& m) {
   py::class_<Progress>(m, "Progress", "A run between two steps.")
@@ -165,6 +167,8 @@ void bind_run(py::module_& m) {
   m.def("run", &run_case, py::arg("case"), py::arg("kind"), py::arg("directory"), py::arg("overwrite"),
         py::arg("resume"), py::arg("threads"), py::arg("callback"), py::arg("fields"), py::arg("command"),
         py::arg("note"));
+  m.def("sweep", &sweep, py::arg("case"), py::arg("directory"), py::arg("overwrite"), py::arg("threads"),
+        py::arg("command"), py::arg("overrides"), py::arg("note"));
   m.def(
       "is_running", [](const std::string& directory) { return is_claimed(directory); }, py::arg("directory"));
   // What hands runs to people and other programs.

@@ -7,7 +7,8 @@
     result = ejecta.run(case)
     print(result.verdict)
 
-`help(ejecta.run)`, `help(ejecta.Case)`, `help(ejecta.keys.valve)` tell more; docs/python.md tells all. Files of runs
+Every command of the command line is here by its name, in the same words. `help(ejecta.run)`, `help(ejecta.Case)`,
+`help(ejecta.keys.valve)` tell more; docs/python.md tells all. Files of runs
 (`ejecta.Run`) can be read without the compiled part of the module.
 """
 
@@ -28,10 +29,12 @@ except ImportError as _missing:
 else:
     from . import keys
     from .case import Case, shape
-    from .running import (
-        Campaign, Check, Job, Margin, Result, Share, Sorting, Study, campaign, check, jet, map, paraview, report, run, sort,
-        study, submit, table,
+    from .many import Campaign, Margin, Share, Sorting, Study, campaign, commands, map, sort, study
+    from .running import Check, Job, Result, Sweep, check, jet, paraview, report, run, submit, sweep, table
+    from .tools import (
+        Operator, Plan, Server, Validation, Validations, bench, cache, clear_cache, explain, new, plan, serve, validate,
+        validation_cases,
     )
 
     __version__ = _core.version
-    Shape, Progress, explain = _core.Shape, _core.Progress, _core.explain
+    Shape, Progress = _core.Shape, _core.Progress

@@ -120,6 +120,16 @@ class Case:
         case._changes = {}
         return case
 
+    @classmethod
+    def parse(cls, text: str, name: str = "case.toml") -> Case:
+        """The case of the text of a case file; `name` stands for the file in messages, and files that it names are relative
+        to the folder of that."""
+        case = cls.__new__(cls)
+        case._tree = _core.CaseTree(text, name)
+        case._file = None
+        case._changes = {}
+        return case
+
     def copy(self) -> Case:
         """A case of its own with the same values."""
         other = Case.__new__(Case)
@@ -135,9 +145,12 @@ class Case:
         self.update({path: value})
 
     def update(self, values: Mapping[str, Any]) -> None:
-        """Sets several keys at once: all, or none where one is wrong."""
-        schema = _Schema(str(values.get("flow.solver", self._tree.solver())))
-        changes = {path: schema.toml(value, path) for path, value in values.items()}
+        """Sets several keys at once: all, or none where one is wrong. None: back to the default, as another shape needs
+        it: case.update({"body.cube.shape": "sphere", "body.cube.diameter": "12 mm", "body.cube.size": None})."""
+        schema = _Schema(str(values.get("flow.solver") or self._tree.solver()))
+        for path in (path for path, value in values.items() if value is None):
+            self._tree.get(path)  # one that there is not
+        changes = {path: None if value is None else schema.toml(value, path) for path, value in values.items()}
         self._tree.set([(path, toml, f"case[{json.dumps(path)}]") for path, toml in changes.items()])
         self._changes.update(changes)
 
@@ -153,9 +166,7 @@ class Case:
 
     def __delitem__(self, path: str) -> None:
         """Back to the default. Raises CaseError where there is no such key."""
-        self._tree.get(path)
-        self._tree.remove(path)
-        self._changes[path] = None
+        self.update({path: None})
 
     def toml(self) -> str:
         """The case as a file says it, resolved: defaults as comments, names of files absolute."""

@@ -1,4 +1,4 @@
-"""Running cases: in this process, in one of their own, many of them."""
+"""Running a case: in this process, or in one of its own."""
 
 from __future__ import annotations
 
@@ -22,10 +22,19 @@ from .run_files import Run, Table
 _log = logging.getLogger("ejecta")
 
 
-def _note(line):
-    """What a run says by the way goes to the logger `ejecta`."""
-    level = logging.WARNING if line.startswith("warning: ") else logging.INFO
-    _log.log(level, line.removeprefix("warning: "))
+_told = set()
+
+
+def note(line):
+    """What a run says by the way goes to the logger `ejecta`; what is unlikely to be meant in a case, once: an optimiser
+    runs it many times."""
+    if ": warning: " in line.partition("\n")[0]:
+        if line in _told:
+            return
+        _told.add(line)
+        _log.warning(line.strip())
+    else:
+        _log.log(logging.WARNING if line.startswith("warning: ") else logging.INFO, line.removeprefix("warning: "))
 
 
 class Check:
@@ -108,9 +117,11 @@ class Result:
         return f"<ejecta.Result {self.end}: {self.verdict or f'at {self.time:.6g} s'}>"
 
 
-def check(case: CaseLike) -> Check:
-    """Checks a case (a Case, a file or a dict) and says what a run of it will be; runs nothing. Raises CaseError."""
-    return Check(*as_case(case)._tree.check())
+def check(case: CaseLike, *, threads: int = 0) -> Check:
+    """Checks a case (a Case, a file or a dict) and says what a run of it will be; runs nothing. Of a study all its runs are
+    looked at, of a campaign all its parts. Raises CaseError. threads: those for which it says how long; 0 for all cores."""
+    require_count("threads", threads)
+    return Check(*as_case(case)._tree.check(threads))
 
 
 def _sets(case):
@@ -120,10 +131,10 @@ def _sets(case):
 
 def _command(kind, case, directory):
     """The line that runs it again, for the files of the run."""
-    return shlex.join(["ejecta", kind, case.name, *_sets(case), "--out", directory])
+    return shlex.join(["ejecta", *kind.split(), case.name, *_sets(case), "--out", directory])
 
 
-def _require_count(name, count):
+def require_count(name, count):
     if not 0 <= count <= 4096:
         raise ValueError(f"{name}={count}\n  expected: 0 for as many as there is room for, or how many")
 
@@ -133,9 +144,9 @@ def _run(kind, case, out, overwrite, resume, threads, callback, fields):
     directory = os.fspath(out) if out is not None else None
     if resume and not directory:
         raise ValueError("resume goes on with the run in a directory: say which, e.g. out=\"my-case.run\"")
-    _require_count("threads", threads)
+    require_count("threads", threads)
     raw = _core.run(case._tree, kind, directory, overwrite, resume, threads, callback, fields,
-                    _command(kind, case, directory) if directory else "", _note)
+                    _command(kind, case, directory) if directory else "", note)
     return Result(raw, directory)
 
 
@@ -160,6 +171,40 @@ def jet(case: CaseLike, *, out: str | os.PathLike[str] | None = None, overwrite:
     return _run("jet", case, out, overwrite, resume, threads, callback, False)
 
 
+class Sweep:
+    """Settled jets. `compressible` and `incompressible` are lists of dicts, one a pressure and one a velocity; `result` is
+    the whole result.json (docs/files.md)."""
+
+    def __init__(self, result, directory=None):
+        self.result = result
+        self.directory = Path(directory) if directory else None
+
+    @property
+    def compressible(self) -> list[dict[str, Any]]:
+        return self.result["compressible"]
+
+    @property
+    def incompressible(self) -> list[dict[str, Any]]:
+        return self.result["incompressible"]
+
+    def __getitem__(self, name):
+        return self.result[name]
+
+    def __repr__(self):
+        return f"<ejecta.Sweep of {len(self.compressible)} pressures and {len(self.incompressible)} velocities>"
+
+
+def sweep(case: CaseLike, *, out: str | os.PathLike[str] | None = None, overwrite: bool = False, threads: int = 0) -> Sweep:
+    """Computes the settled jets of jet.sweep_pressures and jet.sweep_velocities, and the equivalent velocity of each
+    pressure, as `ejecta jet --sweep` does. ^C ends it; it keeps nothing before its end."""
+    require_count("threads", threads)
+    case = as_case(case)
+    directory = os.fspath(out) if out is not None else None
+    result = _core.sweep(case._tree, directory, overwrite, threads, _command("jet --sweep", case, directory) if directory else "",
+                         [f"{path}={toml}" for path, toml in case._changes.items() if toml], note)
+    return Sweep(result, directory)
+
+
 def program():
     """The program `ejecta` that belongs to this module."""
     library = Path(_core.library)
@@ -170,7 +215,7 @@ def program():
     raise FileNotFoundError(f"no program ejecta above {library}")
 
 
-def _file_and_changes(case, directory, kind="run"):
+def file_and_changes(case, directory, kind="run"):
     """The case as words of the command line; one that is not (or no more) a file, or that a command which knows no --set
     is to take, is saved beside its directory."""
     if case._file and None not in case._changes.values() and (kind != "campaign" or not case._changes):
@@ -218,7 +263,7 @@ class Job:
         while self.running:
             time.sleep(0.05)
         if self._process and self._process.returncode in (1, 2, 3):
-            raise _error_of(self._process.returncode, _log_of(self.directory).read_text())
+            raise error_of(self._process.returncode, _log_of(self.directory).read_text())
         return self.result()
 
     def result(self) -> Result:
@@ -245,7 +290,7 @@ def _log_of(directory):
     return directory.parent / f"{directory.name}.log"
 
 
-def _error_of(code, words):
+def error_of(code, words):
     """What a process of the program said, as the exception that it would have been here."""
     kind = {2: InputError, 3: DivergedError}.get(code, Error)
     return kind(words.strip().removeprefix("error: "))
@@ -255,10 +300,10 @@ def submit(case: CaseLike, *, out: str | os.PathLike[str], overwrite: bool = Fal
            threads: int = 0) -> Job:
     """Runs a case in a process of its own, which outlives this one: a Job with progress(), stop() and wait(). What the
     process says stands in OUT.log. Raises CaseError before anything is started."""
-    _require_count("threads", threads)
+    require_count("threads", threads)
     case, directory = as_case(case), Path(out)
     case._tree.check()
-    words = [program(), "run", *_file_and_changes(case, directory), "--out", str(directory)]
+    words = [program(), "run", *file_and_changes(case, directory), "--out", str(directory)]
     words += ["--force"] * overwrite + ["--resume"] * resume + [f"--threads={threads}"] * (threads > 0)
     with open(_log_of(directory), "w") as log:
         return Job(directory, subprocess.Popen(words, stdin=subprocess.DEVNULL, stdout=log, stderr=log,
@@ -268,7 +313,7 @@ def submit(case: CaseLike, *, out: str | os.PathLike[str], overwrite: bool = Fal
 RunLike = Union[Result, Job, Run, str, "os.PathLike[str]"]
 
 
-def _directories(runs):
+def directories_of(runs):
     """Of runs in whatever form they are at hand."""
     found = [getattr(run, "directory", run) for run in runs]
     if not found or None in found:
@@ -279,7 +324,7 @@ def _directories(runs):
 def report(*runs: RunLike, out: str | os.PathLike[str] | None = None) -> Path:
     """Writes the page of a run again, or of several laid over each other, as `ejecta report` does: report.html in the first
     directory unless `out` says where."""
-    directories = _directories(runs)
+    directories = directories_of(runs)
     file = Path(out) if out is not None else Path(directories[0]) / "report.html"
     _core.write_report(directories, str(file))
     return file
@@ -287,183 +332,13 @@ def report(*runs: RunLike, out: str | os.PathLike[str] | None = None) -> Path:
 
 def table(*runs: RunLike, out: str | os.PathLike[str] = "results.csv") -> Path:
     """Writes the results of runs as one table, .csv or .xlsx, as `ejecta table` does."""
-    _core.write_results(_directories(runs), os.fspath(out))
+    _core.write_results(directories_of(runs), os.fspath(out))
     return Path(out)
 
 
 def paraview(run: RunLike) -> Path:
     """Writes a view of a run for ParaView, as `ejecta paraview` does: view.py in its directory."""
-    directory, = _directories([run])
+    directory, = directories_of([run])
     file = Path(directory) / "view.py"
     file.write_text(_core.paraview_view(directory))
     return file
-
-
-class Study:
-    """Many runs of a case: `result` is its result.json, `runs` the table of them, a list of dicts."""
-
-    def __init__(self, directory):
-        self.directory = Path(directory)
-        self.result = json.loads((self.directory / "result.json").read_text())
-
-    @property
-    def runs(self):
-        return self.result["runs"]
-
-    def to_pandas(self):
-        """The table as a DataFrame."""
-        import pandas
-
-        return pandas.json_normalize(self.runs)
-
-    def __getitem__(self, name):
-        return self.result[name]
-
-
-def _carry_out(kind, case, out, options, overwrite):
-    """A command of the program on a case, to its end: its directory. ^C stops it; the same call goes on."""
-    for name, count in options.items():
-        _require_count(name.replace("-", "_"), count)
-    case = as_case(case)
-    directory = Path(out if out is not None else f"{Path(case.name).stem}.{kind}")
-    words = [program(), kind, *_file_and_changes(case, directory, kind), "--out", str(directory), "-q"]
-    words += ["--force"] * overwrite + [f"--{name}={value}" for name, value in options.items() if value > 0]
-    process = subprocess.Popen(words, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE,
-                               text=True, start_new_session=True)
-    try:
-        said = process.communicate()[1]
-    except KeyboardInterrupt:  # what is done stays
-        process.terminate()
-        process.wait()
-        raise
-    if process.returncode != 0:
-        raise _error_of(process.returncode, said)
-    return directory
-
-
-def study(case: CaseLike, *, out: str | os.PathLike[str] | None = None, at_once: int = 0, overwrite: bool = False) -> Study:
-    """Runs a case many times, as its [study] says, in processes of their own. One that was stopped by ^C goes on when it
-    is called again."""
-    return Study(_carry_out("study", case, out, {"at-once": at_once}, overwrite))
-
-
-def map(case: CaseLike, *, out: str | os.PathLike[str] | None = None, at_once: int = 0,  # noqa: A001 (the name that the command has)
-        overwrite: bool = False) -> Study:
-    """Finds the places around the jet from which a particle is ejected, as [map] says."""
-    return Study(_carry_out("map", case, out, {"at-once": at_once}, overwrite))
-
-
-class Share(float):
-    """A share of particles or of mass with the ends of its interval of 95 %: `low`, `high`."""
-
-    low: float
-    high: float
-
-    def __new__(cls, value, low, high):
-        share = super().__new__(cls, value)
-        share.low, share.high = low, high
-        return share
-
-    def __repr__(self):
-        return f"{float(self):.4g} ({self.low:.4g} to {self.high:.4g})"
-
-
-class Sorting:
-    """What became of a feed. `result` is its result.json (docs/files.md).
-
-        sorting.recovery, sorting.purity, sorting.loss   # by mass; .low and .high: 95 %
-        sorting.share("recovery")                        # by number
-        sorting.fates                                    # what became of which class and why, a list of dicts
-    """
-
-    def __init__(self, directory):
-        self.directory = Path(directory)
-        self.result = json.loads((self.directory / "result.json").read_text())
-
-    def share(self, name: str) -> Share:
-        """A share of the result by its name; NaN where there is nothing to share."""
-        numbers = (self.result[name], self.result[f"{name}_low"], self.result[f"{name}_high"])
-        return Share(*(math.nan if number is None else number for number in numbers))
-
-    @property
-    def recovery(self) -> Share:
-        """Of what is to be ejected, the mass that is."""
-        return self.share("recovery_mass")
-
-    @property
-    def purity(self) -> Share:
-        """Of the ejected product, the mass that belongs there."""
-        return self.share("purity_mass")
-
-    @property
-    def loss(self) -> Share:
-        """Of what is to be kept, the mass that is ejected."""
-        return self.share("loss_mass")
-
-    @property
-    def fates(self) -> list[dict[str, Any]]:
-        return self.result["fates"]
-
-    def to_pandas(self):
-        """fates.csv as a DataFrame."""
-        import pandas
-
-        return pandas.read_csv(self.directory / "fates.csv")
-
-    def __getitem__(self, name):
-        return self.result[name]
-
-    def __repr__(self):
-        return f"<ejecta.Sorting {self.result['summary']}>"
-
-
-def sort(case: CaseLike, *, out: str | os.PathLike[str] | None = None, resolved: int = 0, threads: int = 0,
-         overwrite: bool = False) -> Sorting:
-    """Computes a whole sorter, from the feed to its two products, as [sorter] says; `resolved`: computes so many of its
-    shots as runs, and corrects the result with them. One that was stopped by ^C goes on when it is called again."""
-    return Sorting(_carry_out("sort", case, out, {"resolved": resolved, "threads": threads}, overwrite))
-
-
-class Campaign:
-    """A programme of runs, jets, maps and studies: `parts` is a list of dicts (docs/files.md)."""
-
-    def __init__(self, directory):
-        self.directory = Path(directory)
-        self.result = json.loads((self.directory / "result.json").read_text())
-
-    @property
-    def parts(self) -> list[dict[str, Any]]:
-        return self.result["parts"]
-
-    def part(self, number: int) -> Run | Study:
-        """What a part has left: the files of a run or jet, or the study or map."""
-        part = self.parts[number]
-        directory = self.directory / part["directory"]
-        return Study(directory) if part["kind"] in ("study", "map") else Run(directory)
-
-    def __repr__(self):
-        done = sum(part["done"] for part in self.parts)
-        return f"<ejecta.Campaign {self.result['title']}: {done} of {len(self.parts)} parts done>"
-
-
-def campaign(case: CaseLike, *, out: str | os.PathLike[str] | None = None, overwrite: bool = False) -> Campaign:
-    """Carries out a programme of runs, jets, maps and studies, as [campaign] says. Parts that are done stay: one that was
-    stopped by ^C goes on when it is called again."""
-    return Campaign(_carry_out("campaign", case, out, {}, overwrite))
-
-
-class Margin:
-    """By how much (m) a body clears the edge of the plate, as a function of some keys: what optimisers ask for.
-
-        margin = ejecta.Margin(case, ["valve.supply_pressure", "valve.duration"])
-        margin("5 bar gauge", "6 ms")       # or numbers in SI units; negative: not ejected
-    """
-
-    def __init__(self, case: CaseLike, keys: Sequence[str], *, body: str | None = None, threads: int = 0) -> None:
-        self.case, self.keys, self.body, self.threads = as_case(case).copy(), list(keys), body, threads
-
-    def __call__(self, *values: Any) -> float:
-        if len(values) != len(self.keys):
-            raise TypeError(f"{len(values)} values for the keys {', '.join(self.keys)}")
-        self.case.update(dict(zip(self.keys, values)))
-        return run(self.case, threads=self.threads).margin(self.body)

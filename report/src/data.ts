@@ -85,6 +85,8 @@ export interface Replay {
   grains?: GrainCloud;
   undisturbed: Vec3[][];
   valveOpen: [number, number][];
+  /** Time, s, and how far the valve is open, 0 to 1. */
+  valveOpening: [number, number][];
   frames: Frame[];
 }
 
@@ -130,9 +132,10 @@ async function inflate(bytes: Uint8Array): Promise<Uint8Array> {
 
 // The shapes below are those of docs/files.md, before decoding.
 
-export interface RawHeader extends Omit<Replay, "bodies" | "valveOpen" | "frames"> {
+export interface RawHeader extends Omit<Replay, "bodies" | "valveOpen" | "valveOpening" | "frames"> {
   bodies: { name: string; vertices: string; triangles: string }[];
   valve_open: [number, number][];
+  valve_opening?: [number, number][];
 }
 
 export interface RawFrame {
@@ -181,6 +184,7 @@ export function readHeader(h: RawHeader): Replay {
     ...(h.grains ? { grains: h.grains } : {}),
     undisturbed: h.undisturbed,
     valveOpen: h.valve_open,
+    valveOpening: h.valve_opening ?? [],
     frames: [],
   };
 }

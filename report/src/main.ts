@@ -5,9 +5,10 @@ import { readRuns, strongest, type JsonObject, type Run } from "./data";
 import { h, section } from "./dom";
 import { figureCharts, pictureViews } from "./figures";
 import { fixed, unbroken } from "./format";
+import { differenceTable, inputTable } from "./inputs";
 import { readMap } from "./map_data";
 import { mapPage } from "./map_page";
-import { motionCharts, seriesCharts } from "./motion_charts";
+import { motionCharts, seriesCharts, valveChart } from "./motion_charts";
 import { pathNote, pathView } from "./path";
 import { Player } from "./player";
 import { profileCharts } from "./profile_charts";
@@ -30,10 +31,7 @@ function followTheme(): void {
   };
   const follow = (): void => set(dark.matches ? "dark" : "light");
   dark.addEventListener("change", follow);
-  addEventListener("beforeprint", () => {
-    set("light");
-    for (const d of document.querySelectorAll("details")) d.open = true;
-  });
+  addEventListener("beforeprint", () => set("light"));
   addEventListener("afterprint", follow);
   follow();
 }
@@ -102,8 +100,7 @@ function verdict(runs: Run[]): HTMLElement {
     h("ul", { class: "verdicts" }, ...runs.map((run, r) => h("li", {},
       h("span", { class: r > 0 ? "swatch dashed ink" : "swatch ink" }), h("strong", {}, `${run.name}: `), unbroken(run.verdict), changes(run), warnings(run)))));
   if (runs.length === 1) for (const note of [warnings(runs[0]!), changes(runs[0]!), plateNote(runs[0]!)]) if (note) head.append(note);
-  const cards = bodyCards(runs);
-  if (cards) head.append(cards);
+  for (const part of [differenceTable(runs), bodyCards(runs)]) if (part) head.append(part);
   return head;
 }
 
@@ -127,6 +124,8 @@ function page(runs: Run[]): HTMLElement {
 
   add("path", "Path", pathNote(runs), pathView(runs, player));
   add("replay", "Replay", "", replayView(runs, player));
+  add("inputs", "Inputs", "What the case sets; the rest is under Assumptions and in the case file.", grid([valveChart(runs, player)].filter((c) => c !== null)),
+    ...(runs.length === 1 ? runs.map(inputTable) : []));
   add("motion", "Motion", "x along the belt, y across it, z up and along the jet.", motionCharts(runs, player));
   add("jet", "Jet", "", ...pictureViews(runs), grid([...figureCharts(runs), ...profileCharts(runs), ...seriesCharts(runs, player, (n) => n.startsWith("probe-"))]));
   add("expected", "Expected values", "", ...runs.map(expectationTable));

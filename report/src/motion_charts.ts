@@ -70,6 +70,27 @@ function chartsOfBody(name: string, runs: Run[], player: Player): HTMLElement {
   return grid;
 }
 
+/** How far the valve is open over time; further runs dashed. */
+export function valveChart(runs: Run[], player: Player): HTMLElement | null {
+  const lines = runs.flatMap((run) => (run.replay?.valveOpening.length ? [{ run, line: run.replay.valveOpening }] : []));
+  if (lines.length === 0) return null;
+  const times = [...new Set(lines.flatMap(({ line }) => line.map(([t]) => t)))].sort((a, b) => a - b);
+  const opening = (line: [number, number][]): number[] => {
+    let n = 0;
+    return times.map((t) => {
+      while (n + 2 < line.length && line[n + 1]![0] < t) ++n;
+      const [[t0, v0], [t1, v1]] = [line[n]!, line[n + 1] ?? line[n]!];
+      return t > line.at(-1)![0] ? 0 : t1 > t0 ? v0 + ((t - t0) / (t1 - t0)) * (v1 - v0) : v0;
+    });
+  };
+  return chart({
+    title: "Opening of the valve", xLabel: "time [ms]", yLabel: "open [%]", x: times.map((t) => t * 1e3), player,
+    series: lines.map(({ run, line }, r) => ({
+      label: runs.length > 1 ? run.name : "open", values: opening(line).map((v) => 100 * v), colour: (dark) => bodyColour(r, dark), dashed: r > 0,
+    })),
+  });
+}
+
 /** One tab a body; a list to choose from where they are a crowd. */
 export function motionCharts(runs: Run[], player: Player): HTMLElement | null {
   const names = [...new Set(runs.flatMap((run) =>

@@ -20,6 +20,14 @@ function neededImpulse(body: JsonObject): number | undefined {
   return isNumber(impulse) && isNumber(margin) && isNumber(mass) ? impulse - mass * margin : undefined;
 }
 
+/** By how much weaker or stronger the air would have to push for the other outcome; "" where it says nothing. */
+function sureness(body: JsonObject): string {
+  const [margin, gained] = [body["velocity_margin_z_m_s"], body["velocity_change_z_m_s"]];
+  if (!isNumber(margin) || !isNumber(gained) || gained <= 0) return "";
+  const share = `${fixed((100 * Math.abs(margin)) / gained, 0)} %`;
+  return margin >= 0 ? `Ejected still if the air pushed ${margin > gained ? "not at all" : `${share} less`}.` : `Ejected if the air pushed ${share} more.`;
+}
+
 /** "right: ejected", "by-catch: ejected", "undecided: the time limit came first"; "" without a plate. */
 function outcomeOf(body: JsonObject): string {
   const outcome = body["outcome"];
@@ -80,6 +88,7 @@ export function bodyCards(runs: Run[]): HTMLElement | null {
       list.append(h("div", {},
         h("dd", { "data-run": r, "data-pointer": f.pointer }, f.text, f.unit ? h("span", { class: "unit" }, ` ${f.unit}`) : null),
         h("dt", {}, f.label)));
+    const sure = sureness(body);
     cards.append(h("article", { class: "card" },
       h("header", {},
         h("h3", {}, h("span", { class: r > 0 ? "swatch dashed" : "swatch", "data-body": b }), String(body["name"] ?? `body ${b}`),
@@ -87,12 +96,12 @@ export function bodyCards(runs: Run[]): HTMLElement | null {
         outcome !== ""
           ? h("p", { class: good ? "outcome ejected" : "outcome kept" }, h("span", { "aria-hidden": "true" }, sign), outcome)
           : null),
-      list));
+      list, sure ? h("p", { class: "sure" }, sure) : null));
   }));
   return cards.children.length > 0 ? cards : null;
 }
 
-function table(head: string[], rows: (string | Node)[][], numeric: number[] = []): HTMLElement {
+export function table(head: string[], rows: (string | Node)[][], numeric: number[] = []): HTMLElement {
   const kind = (n: number): string | undefined => (numeric.includes(n) ? "number" : undefined);
   return h("div", { class: "table-holder" }, h("table", {},
     h("thead", {}, h("tr", {}, ...head.map((text, n) => h("th", { scope: "col", class: kind(n) }, text)))),

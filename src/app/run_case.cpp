@@ -12,13 +12,11 @@
 #include "base/error.hpp"
 #include "base/exit_code.hpp"
 #include "base/shell_word.hpp"
-#include "jet/inlet.hpp"
-#include "jet/store.hpp"
 #include "output/progress.hpp"
 #include "output/run_directory.hpp"
 #include "output/verdict.hpp"
-#include "simulation/coupled_model.hpp"
 #include "simulation/jet_sweep.hpp"
+#include "simulation/plan.hpp"
 #include "workflow/watched_run.hpp"
 
 namespace ejecta {
@@ -29,12 +27,6 @@ void print_verdict(const Result& result, const std::filesystem::path& run) {
   fmt::print("results: {}\n", (run / "result.json").string());
   if (std::filesystem::exists(run / "report.html"))
     fmt::print("report:  {}\n", (run / "report.html").string());
-}
-
-void print_step(const Case& c, const Model& model) {
-  fmt::print("One step of {}:\n", c.path);
-  int n = 0;
-  for (const auto& op : model.operator_times()) fmt::print("  {:2}. {:<26} {}\n", ++n, op.name, op.equation);
 }
 
 output::ProgressOptions progress_options(const RunOptions& o) {
@@ -132,27 +124,14 @@ int sweep(const Case& c, const RunOptions& options) {
 }  // namespace
 
 int plan_case(const Case& c, bool quiet) {
-  const CoupledModel model(c, planned_inflow(c));
-  if (!quiet) print_step(c, model);
+  const std::vector<OperatorTime> step = planned_step(c);
+  if (!quiet) fmt::print("{}\n", plan_text(c, step));
   return exit_done;
 }
 
 int run_case(const Case& c, const RunOptions& options) {
   if (options.dry_run) return plan_case(c, options.quiet);
   return run_into_directory("run", c, options, run);
-}
-
-std::optional<nlohmann::ordered_json> result_of(const Case& c, const std::filesystem::path& directory,
-                                                int threads) {
-  const RunOptions options{.out = directory.string(), .threads = threads, .force = true, .quiet = true};
-  const std::string command = command_line_of("run", c, options);
-  WatchedRun progress(c, std::cerr, progress_options(options));
-  const RunOfCase any = [](const Case& of, const Context& context) {
-    return is_jet_case(of) ? run_jet(of, kBoxHeight, context) : run(of, context);
-  };
-  const Result r = until_a_signal(progress, options, {directory, true, false, command, command}, any);
-  if (r.end == RunEnd::stopped) return std::nullopt;
-  return r.quantities;
 }
 
 int jet_case(const Case& c, const RunOptions& options) {

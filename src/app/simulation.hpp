@@ -1,7 +1,4 @@
 #pragma once
-#include <filesystem>
-#include <nlohmann/json.hpp>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,10 +21,6 @@ struct RunOptions {
 int run_case(const Case& c, const RunOptions& options);
 /// Prints the operators of a step with their equations; computes nothing. Returns an ExitCode.
 int plan_case(const Case& c, bool quiet = false);
-/// Runs a case, or computes the jet where it is one of those, without a word: its result.json. Nothing where
-/// it was stopped.
-std::optional<nlohmann::ordered_json> result_of(const Case& c, const std::filesystem::path& directory,
-                                                int threads);
 /// Computes only the jet of a case and stores it. Returns an ExitCode.
 int jet_case(const Case& c, const RunOptions& options);
 }  // namespace ejecta

@@ -4,7 +4,6 @@
 
 #include "app/signals.hpp"
 #include "app/teller.hpp"
-#include "base/error.hpp"
 #include "base/exit_code.hpp"
 
 namespace ejecta {
@@ -90,8 +89,6 @@ int study_stop(const std::string& directory) {
 
 int study_collect(const std::string& directory) {
   const TaskStore store = TaskStore::open(directory);
-  if (store.header().value("kind", "study") != "study")
-    throw InputError(fmt::format("{} is a map; `ejecta map CASE` collects it as it goes", directory));
   collect_study(store);
   print_result((store.path() / "result.json").string());
   print_result((store.path() / "runs.csv").string());

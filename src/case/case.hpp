@@ -99,6 +99,7 @@ struct AxisSpec {
 struct GridSpec {
   Geometry geometry = Geometry::cartesian;
   double refinement = 1.0;  ///< applied to `cells` when the case is loaded, then 1 again
+  double refined = 1.0;     ///< what it was
   std::array<AxisSpec, 3> axis;
 };
 

@@ -54,7 +54,8 @@ void join_periodic_sides(Case& c) {
 /// What follows from other keys.
 void fill_in(Case& c) {
   join_periodic_sides(c);
-  refine(c.grid, std::exchange(c.grid.refinement, 1.0));
+  c.grid.refined = std::exchange(c.grid.refinement, 1.0);
+  refine(c.grid, c.grid.refined);
   if (c.fluid.ideal_gas && c.fluid.density == 0.0)
     c.fluid.density = c.environment.pressure / (c.fluid.gas_constant * c.environment.temperature);
   if (c.materials.empty() && !(c.bodies.empty() && c.walls.empty() && c.grains.empty())) {

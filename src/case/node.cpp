@@ -18,13 +18,12 @@ int Place::line_number() const {
 }
 
 std::size_t Place::column() const {
-  if (offset == 0) return 0;
-  const auto before = source->text.rfind('\n', offset - 1);
-  return before == std::string::npos ? offset : offset - before - 1;
+  const std::string_view before = std::string_view(source->text).substr(0, offset);
+  return before.size() - (before.rfind('\n') + 1);  // without a line end that is 0
 }
 
 std::string_view Place::line() const {
-  const std::size_t start = std::min(offset, source->text.size()) - std::min(column(), offset);
+  const std::size_t start = std::min(offset, source->text.size()) - column();
   std::string_view rest = std::string_view(source->text).substr(start);
   rest = rest.substr(0, rest.find('\n'));
   if (rest.ends_with('\r')) rest.remove_suffix(1);

@@ -1,5 +1,7 @@
 #include "case/schema.hpp"
 
+#include <set>
+
 namespace ejecta {
 namespace {
 
@@ -25,6 +27,12 @@ Section list(std::string name, std::string help, std::vector<Spec>& specs, More.
 }
 
 }  // namespace
+
+bool changes_no_result(const std::string& section) {
+  static const std::set<std::string> names{"study",  "map",        "expect", "convergence",
+                                           "output", "checkpoint", "exact",  "measured"};
+  return names.contains(section);
+}
 
 std::vector<Section> sections(Case& c) {
   // Read when the keys are asked for: by then the solver is known.

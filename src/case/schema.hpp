@@ -59,4 +59,7 @@ std::vector<Key> keys(CameraSpec&);
 std::vector<Key> keys(ControllerSpec&);
 std::vector<Key> keys(ManifoldSpec&);
 
+/// A section that says what is written down, compared or studied, not what happens.
+bool changes_no_result(const std::string& section);
+
 }  // namespace ejecta

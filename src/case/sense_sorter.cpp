@@ -30,7 +30,7 @@ void check_orifice(const Case& c, Findings& found) {
         "valve.duration",
         fmt::format("the pulse is longer than the simulated time: it ends at {:.4g} ms, the run at {:.4g} ms",
                     1e3 * closes, 1e3 * c.run.end_time),
-        "a pulse that ends before run.end_time", "duration = \"8 ms\"");
+        "a pulse that ends before run.end_time", fmt::format("[run] end_time = \"{:.4g} ms\"", 1e3 * closes));
   const AxisSpec& x = c.grid.axis[0];
   for (std::size_t n = 0; n < c.boundary[4].patches.size(); ++n) {
     const PatchSpec& p = c.boundary[4].patches[n];

@@ -173,11 +173,12 @@ std::size_t line_start(const std::string& text, std::size_t line_number) {
 }
 
 Problem syntax_problem(const toml::exception& e, const std::shared_ptr<const Source>& source,
-                       std::size_t start) {
+                       std::size_t start, bool at_end) {
   Problem p{.what = "not TOML: " + plain_message(e.what())};
   p.place = {source, start, 1};
   const std::string_view line = p.place.line();
-  const std::size_t column = std::min<std::size_t>(e.location().column() - 1, line.size());
+  const std::size_t column =
+      at_end ? line.size() : std::min<std::size_t>(e.location().column() - 1, line.size());
   p.place.offset += column;
   p.place.length = std::max<std::size_t>(1, line.size() - column);
   advise(p, line);
@@ -214,8 +215,12 @@ Node parse_toml(std::shared_ptr<const Source> source, std::vector<Problem>& prob
     try {
       return convert(toml::parse(stream, source->name), source);
     } catch (const toml::exception& e) {
-      const std::size_t start = line_start(text, e.location().line());
-      problems.push_back(syntax_problem(e, source, start));
+      std::size_t start = line_start(text, e.location().line());
+      // What is missed at the end of the text is missed by its last words.
+      const std::size_t last = text.find_last_not_of(" \t\r\n");
+      const bool at_end = last != std::string::npos && start > last;
+      if (at_end) start = text.rfind('\n', last) + 1;
+      problems.push_back(syntax_problem(e, source, start, at_end));
       if (!blank_line(text, start)) break;
     } catch (const std::exception& e) {  // out of range numbers and the like
       problems.push_back({.what = fmt::format("not TOML: {}", e.what()), .place = {source, 0, 1}});

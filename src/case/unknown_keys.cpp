@@ -55,11 +55,15 @@ Place place_of_key(const Node& node) {
   return place;
 }
 
-/// "run.courant" for "courant" that stands in another section.
-std::string same_name_elsewhere(const std::string& name) {
+/// "run.courant" for "courant", or "courrant", that stands in another section.
+std::string name_elsewhere(const std::string& name) {
+  std::vector<std::string> all;
   for (const auto& [section, names] : known_names())
-    if (!section.empty() && std::find(names.begin(), names.end(), name) != names.end())
-      return section + "." + name;
+    if (!section.empty()) all.insert(all.end(), names.begin(), names.end());
+  const std::string close = nearest(name, all);  // the name itself where it is there
+  for (const auto& [section, names] : known_names())
+    if (!section.empty() && std::find(names.begin(), names.end(), close) != names.end())
+      return section + "." + close;
   return "";
 }
 
@@ -103,6 +107,25 @@ std::string other_word(const std::string& name, const std::vector<std::string>& 
   return "";
 }
 
+std::string nearest_in(const std::string& section, const std::string& name) {
+  const std::vector<std::string>& names = known_names().at(section);
+  const std::string close = other_word(name, names);
+  return close.empty() ? nearest(name, names) : close;
+}
+
+/// What an unknown key or section that stands in `section` was most likely meant to be, or "". Of a section
+/// with a single key, as --set writes it, that key.
+std::string meant_by(const Node& unknown, const std::string& section) {
+  const std::string close = nearest_in(section, unknown.key);
+  const bool single = unknown.is_table() && unknown.children.size() == 1;
+  if (!single) return close.empty() ? name_elsewhere(unknown.key) : close;
+  const std::string& key = unknown.children.front().key;
+  if (close.empty()) return name_elsewhere(key);
+  const std::string other = section.empty() ? close : section + "." + close;
+  const std::string inside = known_names().contains(other) ? nearest_in(other, key) : "";
+  return inside.empty() ? close : close + "." + inside;
+}
+
 void refuse_in(const Node& table, const std::string& section, const std::string& path,
                std::vector<Problem>& problems) {
   const std::vector<std::string>& names = known_names().at(section);
@@ -111,12 +134,10 @@ void refuse_in(const Node& table, const std::string& section, const std::string&
     const std::string child_section = section.empty() ? child.key : section + "." + child.key;
     const std::string child_path = path.empty() ? child.key : path + "." + child.key;
     if (std::find(names.begin(), names.end(), child.key) == names.end()) {
-      std::string close = other_word(child.key, names);
-      if (close.empty()) close = nearest(child.key, names);
       problems.push_back({.key = child_path,
                           .what = "unknown key",
                           .expected = "one of " + joined(names),
-                          .nearest = close.empty() ? same_name_elsewhere(child.key) : close,
+                          .nearest = meant_by(child, section),
                           .place = place_of_key(child)});
       continue;
     }

@@ -61,6 +61,7 @@ std::string header_line(const ReplayHeader& h) {
     json["undisturbed"].push_back(std::move(points));
   }
   json["valve_open"] = h.valve_open;
+  json["valve_opening"] = h.valve_opening;
   return json.dump() + '\n';
 }
 

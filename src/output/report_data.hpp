@@ -83,6 +83,8 @@ struct ReplayHeader {
   std::vector<std::vector<Vec3>> undisturbed;
   /// Openings of the valves, s: start of the command, end of the command
   std::vector<std::array<double, 2>> valve_open;
+  /// How far they open: time (s), 0 to 1
+  std::vector<std::array<double, 2>> valve_opening;
 };
 
 /// One moment of the replay. A frame without slices is a moment at which no air is computed.
@@ -99,6 +101,13 @@ struct Assumption {
   std::string value;   ///< with unit, e.g. "1.8 mm"
   std::string reason;  ///< why this value, and its source
   std::string key;     ///< of the case file that changes it, e.g. "valve.orifice_diameter"
+};
+
+/// A key that the case sets: result.json key "inputs".
+struct Input {
+  std::string what;   ///< e.g. "Diameter of the orifice"
+  std::string value;  ///< with unit, e.g. "1.8 mm"
+  std::string key;    ///< "valve.orifice_diameter"
 };
 
 }  // namespace ejecta::output

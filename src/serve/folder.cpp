@@ -87,10 +87,10 @@ void require_file_name(const std::string& name, const std::string& extension) {
   if (name.size() > extension.size() && name.size() <= 100 && plain && name.ends_with(extension) &&
       !name.starts_with('.'))
     return;
-  throw InputError(
-      fmt::format("\"{}\" cannot be the name of a file here\n  expected: letters, digits, - _ and {}"
-                  "\n  example:  my-rock{}",
-                  name, extension, extension));
+  throw InputError(fmt::format(
+      "\"{}\" cannot be the name of a file here\n  expected: letters, digits, blanks, - _ . and {}"
+      "\n  example:  my-rock{}",
+      name, extension, extension));
 }
 
 }  // namespace ejecta

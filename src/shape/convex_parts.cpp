@@ -154,10 +154,12 @@ std::vector<Polytope> convex_parts(const TriangleMesh& mesh, double error, const
     if (deepest->hollow <= allowed) break;
     auto halves = pieces.size() < kMostParts ? best_cut(*deepest, tolerance, kSliver * volume) : std::nullopt;
     if (!halves)
-      throw InputError(fmt::format(
-          "{}: the solid is not convex, and {} convex parts still leave hollows of {:.4g} mm; allow "
-          "them (fit_error = \"{:.4g} mm\"), simplify the mesh, or use its hull (shape = \"polyhedron\")",
-          name, pieces.size(), 1e3 * deepest->hollow, 1.05e3 * deepest->hollow));
+      throw InputError(
+          fmt::format("{}: the solid is not convex, and {} convex parts still leave hollows of {:.4g} mm",
+                      name, pieces.size(), 1e3 * deepest->hollow),
+          {.key = "fit_error",
+           .expected = "hollows of that depth filled, a simpler mesh, or its hull (shape = \"polyhedron\")",
+           .example = fmt::format("fit_error = \"{:.4g} mm\"", 1.05e3 * deepest->hollow)});
     find_hollows(halves->below, allowed, tolerance);
     find_hollows(halves->above, allowed, tolerance);
     *deepest = std::move(halves->below);

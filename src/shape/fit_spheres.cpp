@@ -115,6 +115,12 @@ double distance_to(const TriangleMesh& mesh, const Vec3& p) {
   return least;
 }
 
+Advice coarser(double error) {
+  return {.key = "fit_error",
+          .expected = fmt::format("at least {:.4g} mm", 1e3 * error),
+          .example = fmt::format("fit_error = \"{:.4g} mm\"", 1.01e3 * error)};
+}
+
 }  // namespace
 
 std::vector<Ball> fit_spheres(const TriangleMesh& mesh, double error, const std::string& name) {
@@ -122,13 +128,12 @@ std::vector<Ball> fit_spheres(const TriangleMesh& mesh, double error, const std:
   const double area = area_of(mesh), spacing = kSpacing * error;
   const double least = std::sqrt(4.0 * area / static_cast<double>(kMost)) / kSpacing;
   if (!(error >= least))
-    throw InputError(fmt::format("{}: fit_error = {:.4g} mm is too fine for this surface; at least {:.4g} mm",
-                                 name, 1e3 * error, 1e3 * least));
+    throw InputError(fmt::format("{}: {:.4g} mm is too fine for this surface", name, 1e3 * error),
+                     coarser(least));
   const std::vector<Sample> samples = samples_of(mesh, spacing);
   if (samples.size() > 4 * kMost)
-    throw InputError(
-        fmt::format("{}: fit_error = {:.4g} mm is too fine for its slender triangles; try {:.4g} mm", name,
-                    1e3 * error, 2e3 * error));
+    throw InputError(fmt::format("{}: {:.4g} mm is too fine for its slender triangles", name, 1e3 * error),
+                     coarser(2.0 * error));
 
   Vec3 low = samples.front().point, high = low;
   for (const Sample& s : samples) {
@@ -210,10 +215,13 @@ std::vector<Ball> fit_spheres(const TriangleMesh& mesh, double error, const std:
   const auto missed = std::find(points.weight.begin(), points.weight.end(), 1.0);
   if (missed != points.weight.end()) {
     const Vec3& p = samples[static_cast<std::size_t>(missed - points.weight.begin())].point;
-    throw InputError(fmt::format(
-        "{}: no sphere inside comes within {:.4g} mm of the surface at ({:.4g}, {:.4g}, {:.4g}) mm; a larger "
-        "fit_error is needed",
-        name, 1e3 * error, 1e3 * p.x(), 1e3 * p.y(), 1e3 * p.z()));
+    throw InputError(
+        fmt::format(
+            "{}: no sphere inside comes within {:.4g} mm of the surface at ({:.4g}, {:.4g}, {:.4g}) mm", name,
+            1e3 * error, 1e3 * p.x(), 1e3 * p.y(), 1e3 * p.z()),
+        {.key = "fit_error",
+         .expected = "a larger one",
+         .example = fmt::format("fit_error = \"{:.4g} mm\"", 2e3 * error)});
   }
   return chosen;
 }

@@ -57,6 +57,28 @@ std::string reason(const Case& c, const std::string& path, const Key& key) {
 
 }  // namespace
 
+std::vector<output::Input> inputs(const Case& original) {
+  Case c = original;  // the schema binds to a case it could change
+  std::vector<output::Input> list;
+  for (const Section& s : sections(c)) {
+    if (changes_no_result(s.name)) continue;
+    for (std::size_t n = 0; n < s.count(); ++n) {
+      const std::string table = s.repeated ? fmt::format("{}.{}", s.name, n) : s.name;
+      for (const Key& key : s.keys(n)) {
+        const std::string path = table + "." + key.name;
+        if (!c.given.contains(path) || path == "run.title" || key.name == "name") continue;
+        const auto* number = std::get_if<double*>(&key.slot);
+        const bool supply = number && key.dimension == Dimension::pressure_absolute && s.name == "valve";
+        list.push_back({key.help,
+                        supply ? format_quantity(**number - c.environment.pressure, Dimension::pressure_gauge)
+                               : plain(value_text(key)),
+                        path});
+      }
+    }
+  }
+  return list;
+}
+
 std::vector<output::Assumption> assumptions(const Case& original) {
   Case c = original;  // the schema binds to a case it could change
   std::vector<output::Assumption> list;

@@ -181,7 +181,7 @@ class BodyCheck {
     const Resolution r = resolution_of(grid_, body_, at_);
     const std::string what = resolution_words(r, body_);
     const std::string finer =
-        fmt::format("[grid] refinement = {:.1f}", case_.grid.refinement * kCellsAdvised / r.cells + 0.05);
+        fmt::format("[grid] refinement = {:.1f}", case_.grid.refined * kCellsAdvised / r.cells + 0.05);
     if (r.cells < kCellsNeeded * kRounding)
       problem(Severity::error, key_, what + ": the air's force on it would be wrong",
               fmt::format("at least {}, better {}", kCellsNeeded, kCellsAdvised), finer);

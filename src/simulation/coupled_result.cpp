@@ -263,6 +263,8 @@ Json CoupledModel::result(double time, std::int64_t steps, double wall_time,
   if (!m.any_grains()) add_spacing(m.particles(), r);
   add_errors(m, time, r);
   if (!operators.empty()) r["operators"] = operators_json(operators);
+  for (const auto& i : inputs(c))
+    r["inputs"].push_back({{"what", i.what}, {"value", i.value}, {"key", i.key}});
   for (const auto& a : assumptions(c))
     r["assumptions"].push_back({{"what", a.what}, {"value", a.value}, {"reason", a.reason}, {"key", a.key}});
   return r;

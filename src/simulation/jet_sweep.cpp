@@ -54,9 +54,9 @@ std::optional<ordered_json> sweep_jet(const Case& original, const Context& conte
   std::sort(c.jet.sweep_pressures.begin(), c.jet.sweep_pressures.end());
   std::sort(c.jet.sweep_velocities.begin(), c.jet.sweep_velocities.end());
   if (c.jet.sweep_pressures.empty() && c.jet.sweep_velocities.empty())
-    throw InputError(
-        "a sweep needs jet.sweep_pressures or jet.sweep_velocities, e.g. --set "
-        "jet.sweep_pressures='[\"400 kPa gauge\", \"700 kPa gauge\"]'");
+    throw InputError(fmt::format("{} has no jets to sweep", c.path),
+                     {.expected = "jet.sweep_pressures or jet.sweep_velocities",
+                      .example = "[jet] sweep_pressures = [\"400 kPa gauge\", \"700 kPa gauge\"]"});
   if (context.files)
     output::RunDirectory::require_creatable(context.files->directory, context.files->overwrite);
   const double height = c.launch.stand_off, start = wall_seconds();

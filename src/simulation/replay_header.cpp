@@ -4,7 +4,9 @@
 #include <cmath>
 #include <optional>
 
+#include "case/load.hpp"
 #include "jet/source.hpp"
+#include "jet/valve.hpp"
 #include "output/body_surface.hpp"
 
 namespace ejecta {
@@ -61,6 +63,19 @@ std::optional<output::SliceRaster> view_from_above(const Case& c, const Grid& gr
   return r;
 }
 
+/// The opening law from the start until it is closed, with its kinks.
+std::vector<std::array<double, 2>> opening_of(const Valve& valve) {
+  constexpr int kPoints = 200;
+  std::vector<double> times = valve.events();
+  for (int n = 0; n <= kPoints; ++n) times.push_back(valve.closed_from() * n / kPoints);
+  std::sort(times.begin(), times.end());
+  times.erase(std::unique(times.begin(), times.end()), times.end());
+  std::vector<std::array<double, 2>> line;
+  for (const double t : times)
+    if (t >= 0.0) line.push_back({t, valve.opening(t)});
+  return line;
+}
+
 }  // namespace
 
 output::ReplayHeader replay_header(const Case& c, const CoupledModel& model) {
@@ -82,6 +97,7 @@ output::ReplayHeader replay_header(const Case& c, const CoupledModel& model) {
     for (const Vec3& x : c.jet.more_nozzles) h.nozzles.push_back({x, along, c.valve.orifice_diameter});
     h.valve_open.push_back({c.valve.opens_at, c.valve.opens_at + c.valve.duration});
     for (double t : c.valve.more_pulses) h.valve_open.push_back({t, t + c.valve.duration});
+    h.valve_opening = opening_of(Valve(c.valve, folder_of(c)));
   }
   if (const std::size_t count = model.particles().bodies().size() - model.first_grain(); count > 0) {
     h.grains = {count, std::min(count, kGrainsShown), 0.0};

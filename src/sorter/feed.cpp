@@ -168,7 +168,7 @@ Feed::Feed(const Case& c) : sorter_(c.sorter), feed_(c.feed) {
 void Feed::read_file(const Case& c) {
   std::vector<Problem> problems;
   const CsvTable table = read_log(c, problems);
-  if (!problems.empty()) throw InputError(render(problems));
+  if (!problems.empty()) throw CaseError(problems);
   const CounterRandom what = stream_of(sorter_.seed, 0, properties);
   std::uint64_t property = 0;
   for (const std::vector<double>& row : table.rows) {

@@ -16,6 +16,7 @@
 #include "case/override.hpp"
 #include "case/problem.hpp"
 #include "case/read_value.hpp"
+#include "case/schema.hpp"
 #include "case/write.hpp"
 #include "output/build_info.hpp"
 #include "output/progress.hpp"
@@ -28,10 +29,6 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr std::size_t kMostTasks = 100'000;
-
-/// Sections that say what is written down, compared or studied, not what happens.
-const std::set<std::string> kWithoutEffect{"study",  "map",        "expect", "convergence",
-                                           "output", "checkpoint", "exact",  "measured"};
 
 /// The numbers of a key that has some: where they are read from, and how they are put back.
 class Range {
@@ -163,7 +160,7 @@ class Setup {
   }
   void refuse(Problem p) { problems_.push_back(std::move(p)); }
   void throw_if_any() const {
-    if (!problems_.empty()) throw InputError(render(problems_));
+    if (!problems_.empty()) throw CaseError(problems_);
   }
 
   void read_variable(std::size_t n) {
@@ -184,7 +181,7 @@ class Setup {
       return wrong("key", fmt::format("there is no key \"{}\"", spec.key), "a key of the case file",
                    nearest_key(probe, spec.key), "key = \"valve.supply_pressure\"");
     const std::string section = spec.key.substr(0, spec.key.find('.'));
-    if (kWithoutEffect.contains(section) || spec.key == "run.title" || key->name == "name")
+    if (changes_no_result(section) || spec.key == "run.title" || key->name == "name")
       return wrong("key", fmt::format("{} may not vary: it changes no result", spec.key),
                    "a key that decides what happens", "", "key = \"valve.supply_pressure\"");
     for (const Variable& other : variables_)
@@ -317,8 +314,11 @@ class Setup {
       Node root = plain;
       std::vector<Problem> found;
       for (std::size_t d = 0; d < values.size(); ++d)
-        if (const std::string refusal = put_value(root, variables_[d].key, values[d]); !refusal.empty())
-          found.push_back({.key = variables_[d].key, .what = refusal, .place = values[d].place});
+        if (auto refusal = put_value(root, variables_[d].key, values[d])) {
+          refusal->key = variables_[d].key;
+          refusal->place = values[d].place;
+          found.push_back(std::move(*refusal));
+        }
       Case c = resolve_case(root, base_.path, found, further_);
       if (found.empty()) {
         Json labels = Json::object();

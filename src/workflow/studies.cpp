@@ -77,6 +77,9 @@ std::filesystem::path study_directory(const StudyOptions& o, const char* kind) {
 }
 
 void collect_study(const TaskStore& store) {
+  if (store.header().value("kind", "study") != "study")
+    throw InputError(
+        fmt::format("{} is a map; `ejecta map CASE` collects it as it goes", store.path().string()));
   const auto result = study_result(store);
   output::write_file(store.path() / "runs.csv", study_table(result));
   store.write_json("result.json", result);
@@ -190,9 +193,7 @@ int compute_campaign(const std::string& path, CampaignOptions o, const std::file
   return run_campaign(c, o, hands_for(program, who));
 }
 
-void check_study(const Case& c, const std::vector<std::string>& overrides) {
-  set_up_study(case_tree(c.path, overrides), c, all_checks());
-}
+void check_study(const Node& root, const Case& c) { set_up_study(root, c, all_checks()); }
 
 std::string campaign_checked(const Case& c) { return check_campaign(c, hands_for({}, {})); }
 

@@ -38,13 +38,13 @@ int compute_tasks(const std::string& directory, const std::vector<std::size_t>& 
 /// Gives commands to `program`. Returns the exit code of run_campaign.
 int compute_campaign(const std::string& path, CampaignOptions options, const std::filesystem::path& program,
                      const Attendance& who);
-/// Throws InputError with all that is wrong with any run of a [study]. `c`: loaded with these overrides.
-void check_study(const Case& c, const std::vector<std::string>& overrides);
+/// Throws InputError with all that is wrong with any run of a [study]. `root`: the tree of the case `c`.
+void check_study(const Node& root, const Case& c);
 /// The parts of a campaign; throws InputError where one cannot be run.
 std::string campaign_checked(const Case& c);
 
 std::filesystem::path study_directory(const StudyOptions& options, const char* kind);
-/// Writes runs.csv, result.json and the report of a study from what is done.
+/// Writes runs.csv, result.json and the report of a study from what is done. Throws InputError for a map.
 void collect_study(const TaskStore& store);
 
 }  // namespace ejecta

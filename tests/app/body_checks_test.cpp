@@ -46,6 +46,18 @@ TEST(BodyChecks, FewCellsAcrossABody) {
               Contains(HasSubstr("warning: body.0: 6.0 cells across the smallest feature (6 mm)")));
 }
 
+/// Of a case that has one already, too.
+TEST(BodyChecks, TheRefinementThatIsAdvisedIsEnough) {
+  const auto checked = [](const std::string& refinement) {
+    return check_bodies(parse_case(case_template("ejection"), "ejection", {"grid.refinement=" + refinement}));
+  };
+  const std::vector<Problem> coarse = checked("0.5");
+  ASSERT_EQ(coarse.size(), 1u);
+  const std::string advised = coarse[0].example.substr(coarse[0].example.find("= ") + 2);
+  EXPECT_LT(std::stod(advised), 1.0);
+  EXPECT_THAT(words_of(checked(advised)), IsEmpty());
+}
+
 /// A box 60 mm wide with cells of the given widths.
 Case box(int nx, int nz, const std::string& body, const std::string& x_max = "wall") {
   return parse_case("[run]\nend_time = \"1 ms\"\n[grid.x]\npoints = [\"-30 mm\", \"30 mm\"]\ncells = " +

@@ -216,6 +216,25 @@ class CommandLine(unittest.TestCase):
         self.assertEqual(answer.returncode, 2)
         self.assertIn("--set run.end_time=2", answer.stderr)
 
+    def test_a_wrong_set_tells_what_would_be_right(self):
+        """In every command that has it, in the words of a wrong line of a file."""
+        said = {
+            "run.end_tim=2 ms": "nearest:  end_time",
+            "run.end_time=2 mm": 'nearest is "ms"',
+            "flow.solver=nothing": '"none"',
+            "body.bal.diameter=2 mm": "nearest:  body.ball.diameter",
+            "body.diameter=2 mm": "example:  --set body.ball.diameter=\"2 mm\"",
+            "valv.duration=2 ms": "nearest:  valve.duration",
+            "run.end_time=[2 ms": "example:  end_time",
+        }
+        commands = (["check"], ["run", "-q"], ["run", "--dry-run"], ["plan"], ["jet", "-q"], ["study", "-q"], ["map", "-q"], ["sort", "-q"])
+        for command in commands:
+            for word, help in said.items():
+                answer = ejecta(*command, self.case(), "--set", word)
+                self.assertEqual(answer.returncode, 2, (command, word))
+                self.assertIn(f"--set {word}: ", answer.stderr, command)
+                self.assertIn(help, answer.stderr, (command, word))
+
     def test_cache_lists_and_clears_its_own_files_only(self):
         store = pathlib.Path("store")
         store.mkdir()

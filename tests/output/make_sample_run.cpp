@@ -100,6 +100,7 @@ void write_sample(const std::filesystem::path& directory, double push, int cells
     header.plates = {{"dividing plate", Vec3(0.25, 0, 0.072), Vec3(1, 0, 0), Vec3(0, 1, 0), 0.1, 0.1, 2e-3}};
   header.nozzles = {{Vec3(0, 0, 0), Vec3(0, 0, 1), 1.8e-3}};
   header.valve_open = {{kOpen, kClose}};
+  header.valve_opening = {{0.0, 0.0}, {kOpen, 0.0}, {0.5 * (kOpen + kClose), 1.0}, {kClose, 0.0}};
   for (const Lump& lump : lumps) {
     std::vector<Vec3> path;
     for (double t = 0; t <= kEnd; t += 2e-3)
@@ -245,6 +246,12 @@ void write_sample(const std::filesystem::path& directory, double push, int cells
        {"seconds", 9.4},
        {"calls", 1200}},
       {{"name", "bodies.advance"}, {"equation", "m dv/dt = F + m g"}, {"seconds", 0.3}, {"calls", 600}}};
+  result["inputs"] = {{{"what", "Pressure upstream of the nozzle"},
+                       {"value", fmt::format("{} kPa gauge", 700 * push)},
+                       {"key", "valve.supply_pressure"}},
+                      {{"what", "Speed along +x with which the body leaves the belt"},
+                       {"value", "3 m/s"},
+                       {"key", "launch.belt_speed"}}};
   result["assumptions"] = {
       {{"what", "Diameter of the orifice"},
        {"value", "1.8 mm"},

@@ -77,6 +77,15 @@ try {
       assert.equal(await element.textContent(), text);
     }
 
+    // Inputs, and by what several runs differ: a line each.
+    if (runs.length === 1 && results[0].inputs) {
+      const inputs = await page.locator("#inputs tbody tr").allTextContents();
+      for (const { key, value } of results[0].inputs.filter(({ key }) => /^(valve|launch|body)/.test(key)))
+        assert.ok(inputs.some((line) => line.includes(key) && line.includes(value)), `${key} is not on the page`);
+      await page.locator("#inputs .u-wrap").waitFor();
+    }
+    if (runs.length > 1 && results.every(({ inputs }) => inputs)) assert.equal(await page.locator(".verdict > .table-holder tbody tr").count(), runs.length);
+
     // No sideways scrolling, every image described, a heading for each section.
     const overflow = await page.evaluate(() => document.documentElement.scrollWidth - innerWidth);
     assert.ok(overflow <= 0, `the page is ${overflow} px too wide at ${width}`);
@@ -131,6 +140,12 @@ try {
     });
     await page.waitForTimeout(200);
     await page.screenshot({ path: path.join(screenshots, `${path.basename(report, ".html")}-${width}-${scheme}.png`), fullPage: true });
+    // On paper a run has three pages; what there is only on the screen is on none.
+    if (width === 1440 && scheme === "dark") {
+      const paper = await page.pdf({ path: path.join(screenshots, `${path.basename(report, ".html")}.pdf`), format: "A4", printBackground: true });
+      const pages = paper.toString("latin1").match(/\/Type \/Page\b/g).length;
+      if (runs.length === 1 && results[0].bodies?.length) assert.equal(pages, 3);
+    }
     assert.deepEqual(errors, []);
     await page.close();
   }

@@ -91,6 +91,24 @@ function lump() {
   return `solid lump\n${facets.map((f) => `facet normal 0 0 0\nouter loop\n${f.map((n) => `vertex ${points[n].join(" ")}\n`).join("")}endloop\nendfacet\n`).join("")}endsolid lump\n`;
 }
 
+/** The same as a scan gives it: rough all over, with more hollows than convex parts can follow. */
+function scanned() {
+  const rings = 10, around = 16, corners = [];
+  const noise = (n) => 1 + 0.03 * (2 * ((Math.sin(12.9898 * n) * 43758.5453) % 1));
+  const at = (r, a) => (r === 0 ? 0 : r === rings ? 1 : 2 + (r - 1) * around + (a % around));
+  for (let n = 0; n < 2 + (rings - 1) * around; ++n) {
+    const polar = n === 0 ? 0 : n === 1 ? Math.PI : (Math.PI * (1 + Math.floor((n - 2) / around))) / rings, turn = (2 * Math.PI * ((n - 2) % around)) / around;
+    corners.push([8 * Math.sin(polar) * Math.cos(turn), 6 * Math.sin(polar) * Math.sin(turn), 5 * Math.cos(polar)].map((v) => v * noise(n)));
+  }
+  const facets = [];
+  for (let r = 0; r < rings; ++r)
+    for (let a = 0; a < around; ++a) {
+      if (r > 0) facets.push([at(r, a), at(r + 1, a), at(r, a + 1)]);
+      if (r < rings - 1) facets.push([at(r, a + 1), at(r + 1, a), at(r + 1, a + 1)]);
+    }
+  return `solid scan\n${facets.map((f) => `facet normal 0 0 0\nouter loop\n${f.map((n) => `vertex ${corners[n].join(" ")}\n`).join("")}endloop\nendfacet\n`).join("")}endsolid scan\n`;
+}
+
 async function serve(port) {
   const server = spawn(program, ["serve", scratch, ...(port ? ["--port", String(port)] : [])], { stdio: ["ignore", "pipe", "inherit"] });
   const [address] = await new Promise((resolve) => createInterface(server.stdout).once("line", (line) => resolve([line])));
@@ -268,7 +286,7 @@ try {
   // By the keyboard alone: a first case of somebody who has none, with the rock that he has as a file.
   await again.keyboard.press("Home");
   await tabTo(again.getByLabel("Name of a new case"));
-  await again.keyboard.type("mine");
+  await again.keyboard.type("mine!"); // what no file is called is left out
   await again.keyboard.press("Enter");
   await again.waitForSelector(".drawing .body");
   assert.ok(existsSync(path.join(scratch, "mine.toml")));
@@ -314,6 +332,16 @@ try {
   await again.locator("#save").click(); // before the page has heard that the text is changed
   await again.waitForFunction(() => document.querySelector("#save").ariaDisabled === "true");
   assert.match(readFileSync(path.join(scratch, "mine.toml"), "utf8"), /^scale = 0\.001/m);
+
+  // One as a scan gives it, with the name that somebody gave the file.
+  const [rough] = await Promise.all([again.waitForEvent("filechooser"), again.locator("#shape").click()]);
+  await rough.setFiles({ name: "Rock #3 (scan).STL", mimeType: "model/stl", buffer: Buffer.from(scanned()) });
+  await again.waitForFunction(() => /Rock 3 scan/.test(document.querySelector(".shapes legend").textContent)
+    && /are filled/.test(document.querySelector(".shapes .note").textContent) && !document.querySelector(".problems .error"), null, { timeout: 60000 });
+  assert.ok(existsSync(path.join(scratch, "Rock 3 scan.stl")));
+  assert.match(await mine(), /^name = "Rock 3 scan"/m);
+  await again.locator("#save").click();
+  await again.waitForFunction(() => document.querySelector("#save").ariaDisabled === "true");
 
   // A study: its curves come with its runs.
   await openCase(again, "sizes.toml");

@@ -210,14 +210,17 @@ TEST(ConvexParts, NamesAnErrorThatWorks) {
   GTEST_SKIP() << "takes minutes under the sanitizers; the smaller meshes above take the same ways";
 #endif
   const TriangleMesh mesh = dimpled(3);
-  std::string message;
+  InputError refusal("");
   try {
     make_mesh(mesh, "golf.stl");
   } catch (const InputError& e) {
-    message = e.what();
+    refusal = e;
   }
-  ASSERT_THAT(message, HasSubstr("golf.stl: the solid is not convex, and "));
-  const double error = 1e-3 * std::stod(message.substr(message.find("fit_error = \"") + 13));
+  ASSERT_THAT(refusal.what(), HasSubstr("golf.stl: the solid is not convex, and "));
+  EXPECT_EQ(refusal.advice.key, "fit_error");
+  const std::string example = refusal.advice.example;
+  ASSERT_THAT(example, HasSubstr("fit_error = \""));
+  const double error = 1e-3 * std::stod(example.substr(example.find('"') + 1));
   EXPECT_LE(convex_parts(mesh, error, "golf.stl").size(), 100u);
 }
 

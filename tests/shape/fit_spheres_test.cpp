@@ -84,7 +84,8 @@ TEST(FitSpheres, SaysWhichErrorIsPossible) {
     FAIL() << "accepted";
   } catch (const InputError& e) {
     EXPECT_THAT(e.what(), HasSubstr("angle.stl"));
-    EXPECT_THAT(e.what(), HasSubstr("at least 0.29"));
+    EXPECT_EQ(e.advice.key, "fit_error");
+    EXPECT_THAT(e.advice.expected, HasSubstr("at least 0.29"));
   }
 }
 

@@ -115,6 +115,12 @@ async function post<T>(path: string, body: object, signal?: AbortSignal): Promis
 /** The address of a file of a job. */
 export const fileOf = (job: string, file: string): string => `/files/${[...job.split("/"), ...file.split("/")].map(encodeURIComponent).join("/")}`;
 
+/** What somebody calls a thing, as the name of a file that the server takes: what it does not take is left out. */
+export function fileName(called: string, extension: string): string {
+  const stem = called.trim().replace(new RegExp(`\\${extension}$`, "i"), "");
+  return stem.replace(/[^\p{L}\p{N} _.-]+/gu, " ").replace(/ +/g, " ").replace(/^[ .-]+| +$/g, "").slice(0, 60) + extension;
+}
+
 export const api = {
   schema: () => get<SchemaSection[]>("/api/schema"),
   cases: () => get<{ folder: string; cases: string[] }>("/api/cases"),
@@ -135,7 +141,7 @@ export const api = {
   atOnce: (count: number) => post<object>("/api/at-once", { count }),
   /** `extent`: along x, y, z in the unit of the file, which nobody knows. */
   upload: async (file: File, caseName: string) => answered<{ name: string; extent: [number, number, number] }>(
-    await fetch(`/api/upload?name=${encodeURIComponent(file.name)}&case=${encodeURIComponent(caseName)}`, { method: "POST", body: file })),
+    await fetch(`/api/upload?name=${encodeURIComponent(fileName(file.name, ".stl"))}&case=${encodeURIComponent(caseName)}`, { method: "POST", body: file })),
 };
 
 /** Reads a file that grows by whole lines: each call gives those that have come. */

@@ -2,7 +2,7 @@
 
 import { h } from "../dom";
 import { duration, fixed, thousands } from "../format";
-import { api, type Judgement, type Kind, type Problem, type SchemaSection, type Value } from "./api";
+import { api, fileName, type Judgement, type Kind, type Problem, type SchemaSection, type Value } from "./api";
 import { drawingView } from "./drawing";
 import { Form } from "./form";
 import { renew } from "./renew";
@@ -45,7 +45,7 @@ export class CaseView {
     this.saveButton.addEventListener("click", () => void (this.changed && this.save()));
     this.copyButton.addEventListener("click", () => {
       const copy = prompt("Name of the copy", name.split("/").at(-1)!.replace(/(-(\d+))?\.toml$/, (_all, _dash, n: string | undefined) => `-${Number(n ?? 1) + 1}.toml`));
-      if (copy) this.save().then(() => api.copy(name, copy.endsWith(".toml") ? copy : `${copy}.toml`)).then((made) => copied(made.name), (error: Error) => this.say(error.message));
+      if (copy) this.save().then(() => api.copy(name, fileName(copy, ".toml"))).then((made) => copied(made.name), (error: Error) => this.say(error.message));
     });
     this.shapeButton.addEventListener("click", () => this.shapeFile.click());
     this.shapeFile.addEventListener("change", () => {
@@ -77,10 +77,17 @@ export class CaseView {
   }
 
   private change(path: string, value: string | null): void {
+    this.changeAll([[path, value]]);
+  }
+
+  /** All that belongs together, checked once. */
+  private changeAll(values: [path: string, value: string | null][]): void {
     this.edits = this.edits.then(async () => {
       try {
-        const { text } = value === null ? await api.unset(this.text.value, path) : await api.set(this.text.value, path, value);
-        this.text.value = text;
+        for (const [path, value] of values) {
+          const { text } = value === null ? await api.unset(this.text.value, path) : await api.set(this.text.value, path, value);
+          this.text.value = text;
+        }
         await this.check();
       } catch (error) {
         this.say((error as Error).message);
@@ -217,14 +224,15 @@ export class CaseView {
     const said = this.text.value.replace(/#.*$/gm, "");
     const own = title?.text === body.text ? 2 : 1; // the title and the name itself
     if (said.split(body.text).length - 1 > own || said.includes(`body.${old}.`)) return;
-    this.change("body.0.name", JSON.stringify(name));
-    if (title?.given && title.text.includes(old)) this.change("run.title", JSON.stringify(name));
+    const called = JSON.stringify(name);
+    this.changeAll([["body.0.name", called], ...(title?.given && title.text.includes(old) ? [["run.title", called] as [string, string]] : [])]);
   }
 
   /** Dents that the grid cannot see are filled, no larger ones than it takes; `size`: of the body, in the unit of its file. */
   private async simplify(file: string, size: number): Promise<void> {
     await this.edits;
-    const unseen = (): boolean => (this.judgement?.problems ?? []).some((p) => p.severity === "error" && p.key === "body.0" && p.what.includes("cells across"));
+    const tooFine = (p: Problem): boolean => p.key === "body.0.fit_error" || (p.key === "body.0" && p.what.includes("cells across"));
+    const unseen = (): boolean => (this.judgement?.problems ?? []).some((p) => p.severity === "error" && tooFine(p));
     const scale = Number(this.values["body.0.scale"]?.text ?? 1);
     for (const share of [0.01, 0.02, 0.04, 0.06, 0.08, 0.1]) {
       if (!unseen()) return;
@@ -241,10 +249,10 @@ export class CaseView {
   async useShape(file: File): Promise<void> {
     try {
       const { name, extent } = await api.upload(file, this.name);
-      for (const [path, value] of this.shapes.take(name, extent)) this.change(path, value);
+      this.changeAll(this.shapes.take(name, extent));
       await this.edits;
-      const left = (this.judgement?.problems ?? []).filter((p) => p.severity === "error" && p.key.startsWith("body.0.") && this.judgement?.values?.[p.key]?.given);
-      for (const { key } of left) this.change(key, null);
+      const left = (this.judgement?.problems ?? []).filter((p) => p.severity === "error" && p.key.startsWith("body.0.") && p.key !== "body.0.fit_error" && this.judgement?.values?.[p.key]?.given);
+      if (left.length) this.changeAll(left.map(({ key }) => [key, null]));
       await this.edits;
       this.rename(name.replace(/\.stl$/i, ""));
       await this.simplify(name, Math.max(...extent));

@@ -2,7 +2,7 @@ import "../style.css";
 import "./workbench.css";
 import { paintSwatches } from "../colour";
 import { h } from "../dom";
-import { api, watchFolder, type FolderState } from "./api";
+import { api, fileName, watchFolder, type FolderState } from "./api";
 import { CaseView } from "./case_view";
 import { JobListView } from "./job_list";
 import { JobView } from "./job_view";
@@ -97,8 +97,7 @@ async function start(): Promise<void> {
   const create = h("form", { class: "new" }, newName, h("button", { type: "submit" }, "New case"));
   create.addEventListener("submit", (event) => {
     event.preventDefault();
-    const typed = newName.value.trim() || newName.placeholder;
-    const name = typed.endsWith(".toml") ? typed : `${typed}.toml`;
+    const name = fileName(newName.value.trim() || newName.placeholder, ".toml");
     api.create(name).then(() => {
       note.textContent = "";
       newName.value = "";

@@ -43,13 +43,14 @@ export class ShapePanel {
     this.angles = keys.find((key) => key.name === "rotation_angle")!;
   }
 
-  /** What makes a file the shape of the first body. */
+  /** What makes a file the shape of the first body; dents that were filled were those of its former shape. */
   take(file: string, extent: Extent): [path: string, value: string | null][] {
     const size = Math.max(...extent);
     const likely = (unit: string): boolean => size * this.factor(unit) >= LIKELY[0] && size * this.factor(unit) <= LIKELY[1];
     const unit = GUESSES.find(likely) ?? "mm";
     this.guessed.set(file, { extent, unit });
-    return [["body.0.shape", '"mesh"'], ["body.0.file", JSON.stringify(file)], ["body.0.scale", String(this.factor(unit))]];
+    const filled: [string, null][] = this.values["body.0.fit_error"]?.given ? [["body.0.fit_error", null]] : [];
+    return [["body.0.shape", '"mesh"'], ["body.0.file", JSON.stringify(file)], ["body.0.scale", String(this.factor(unit))], ...filled];
   }
 
   /** Dents of up to so many mm were filled, since the grid does not see them. */

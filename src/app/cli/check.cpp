@@ -40,7 +40,7 @@ void add_check(CLI::App& app, Action& action) {
           std::vector<Problem> warnings;
           std::optional<Scene> scene;
           const Case c = load_checked(case_file(path), o->overrides, &warnings, &scene);
-          if (c.study.enabled) check_study(c, o->overrides);
+          if (c.study.enabled) check_study(case_tree(c.path, o->overrides), c);
           if (c.campaign.enabled) {
             const std::string said = campaign_checked(c);
             if (o->json) list.push_back({{"case", path}, {"problems", nlohmann::ordered_json::array()}});

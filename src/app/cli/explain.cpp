@@ -10,24 +10,10 @@
 #include "base/exit_code.hpp"
 #include "base/text.hpp"
 #include "case/template.hpp"
-#include "output/result_words.hpp"
+#include "simulation/help.hpp"
 
 /// The commands that only tell: explain, new.
 namespace ejecta {
-namespace {
-
-/// Of keys, and of the words of results: users know them apart only once they have been told.
-std::string explain_anything(const std::string& topic) {
-  const std::string results = output::explain_result(topic);
-  if (results.empty()) return explain(topic);
-  try {
-    return results + "\n" + explain(topic);
-  } catch (const InputError&) {  // no key is about it
-    return results;
-  }
-}
-
-}  // namespace
 
 void add_explain(CLI::App& app, Action& action) {
   struct Options {
@@ -52,7 +38,7 @@ void add_explain(CLI::App& app, Action& action) {
                        : o->completion ? bash_completion(app)
                        : o->markdown   ? reference_page()
                        : o->schema     ? json_schema()
-                                       : explain_anything(joined(o->topic, " ")));
+                                       : help_on(joined(o->topic, " ")));
       return int{exit_done};
     };
   });

@@ -5,11 +5,12 @@
 
 #include "app/cli/case_options.hpp"
 #include "app/cli/commands.hpp"
-#include "app/simulation.hpp"
+#include "app/signals.hpp"
 #include "app/teller.hpp"
 #include "base/exit_code.hpp"
 #include "simulation/body_checks.hpp"
 #include "validation/validation.hpp"
+#include "workflow/result_of.hpp"
 
 namespace ejecta {
 void add_validate(CLI::App& app, Action& action) {
@@ -42,8 +43,10 @@ void add_validate(CLI::App& app, Action& action) {
       }
       const Runner runner{
           .load = [](const std::string& path) { return load_checked(path); },
-          .run = [&](const Case& c,
-                     const std::filesystem::path& directory) { return result_of(c, directory, o->threads); }};
+          .run =
+              [&, stop = stop_on_signal()](const Case& c, const std::filesystem::path& directory) {
+                return result_of(c, directory, {.threads = o->threads, .stop = stop});
+              }};
       const std::vector<Validation> done = validate_cases(files, o->out, runner, print_note);
       fmt::print("{}", validation_table(done));
       return int{exit_code_of(done)};
