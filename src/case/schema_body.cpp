@@ -20,8 +20,7 @@ std::vector<Key> keys(MaterialSpec& s) {
       {"rolling_friction", &s.rolling_friction, none, not_negative, "Coefficient of rolling friction", ""},
       {"roughness", &s.roughness, length, not_negative,
        "Height of the sand grains that make a surface as rough as this one, for the air's friction on it in "
-       "turbulent "
-       "incompressible flow; 0 is smooth",
+       "turbulent flow; 0 is smooth",
        "Colebrook 1939"}};
 }
 

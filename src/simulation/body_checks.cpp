@@ -423,12 +423,13 @@ Resolution resolution_of(const Grid& grid, const Body& body, const Vec3& place) 
 }
 
 std::string resolution_words(const Resolution& r, const Body& body) {
+  const double cells = std::floor(10 * r.cells + 1e-6) / 10;  // 3.98 are not the 4.0 that are asked for
   const bool smallest = r.width.size <= body.shape.smallest_feature() * (1 + 1e-6);
   if (smallest)
-    return fmt::format("{:.1f} cells across the smallest feature ({})", r.cells, mm_or_m(r.width.size));
+    return fmt::format("{:.1f} cells across the smallest feature ({})", cells, mm_or_m(r.width.size));
   const Vec3& either = r.width.direction;
   const Vec3 d = (either.sum() < 0.0 ? -1.0 : 1.0) * either + Vec3(0, 0, 0);  // no minus before a nought
-  return fmt::format("{:.1f} cells across the {} along ({:.2g}, {:.2g}, {:.2g})", r.cells,
+  return fmt::format("{:.1f} cells across the {} along ({:.2g}, {:.2g}, {:.2g})", cells,
                      mm_or_m(r.width.size), d.x(), d.y(), d.z());
 }
 

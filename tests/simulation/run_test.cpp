@@ -353,7 +353,6 @@ TEST(Run, AChannelHasTheFrictionOfItsWalls) {
     const Case c = parse_case(fmt::format(R"(
 [run]
 end_time = "40 s"
-courant = 0.9
 [environment]
 gravity = ["0 m/s2", "0 m/s2", "0 m/s2"]
 [fluid]

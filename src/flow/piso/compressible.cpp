@@ -138,7 +138,10 @@ double Compressible::stable_dt(double courant) {
   if (!std::isfinite(double(flow) + both)) report_divergence();
   largest_nu_ = double(nu);
   explicit_dt_ = 1.0 / std::max(double(flow) + double(diffusive), 1e-30);
-  return courant / std::max(turbulent() ? faster : both, 1e-30);
+  // Smoothing ends at the sides of the box (Incompressible::stable_dt).
+  bool continues = false;
+  for (int d = 0; d < 3; ++d) continues |= grid_.active(d) && boundaries_.is_periodic(d);
+  return courant / std::max(turbulent() && !continues ? faster : both, 1e-30);
 }
 
 void Compressible::measure_growth() {
