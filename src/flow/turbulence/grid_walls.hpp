@@ -22,7 +22,9 @@ class GridWalls {
   GridWalls(const Grid& grid, const std::array<bool, 6>& is_wall, const std::array<ConstFieldView, 3>& u)
       : grid_(grid), is_wall_(is_wall), u_(u) {}
 
-  /// visit(i) for the cells of a row that are beside walls.
+  /// Whether a row has cells beside walls.
+  bool beside_row(int j, int k) const { return is_wall_[0] || is_wall_[1] || beside(1, j) || beside(2, k); }
+  /// visit(i) for these cells.
   template <class Visit>
   void for_each_in_row(int j, int k, const Visit& visit) const {
     const int last = grid_.nx() - 1;

@@ -107,16 +107,31 @@ void transport(const Grid& grid, const ScalarFlux<kSst>& face, const std::array<
     const GradientRow gradient = gradient_row(grid, u, j, k);
     const ProductRow product = product_row(grid, face.value[0], face.value[1], j, k);
     const int nx = grid.nx();
-    const auto update = [=, &walls](auto axisymmetric, auto unfinished) {
+    const auto update = [=, &walls](auto axisymmetric, auto unfinished, auto beside_wall) {
       GradientRow row = gradient;
       if constexpr (!axisymmetric) row.radius = nullptr;
-      const auto finish = [=](int i, SourcePoint p) __attribute__((always_inline)) {
+      const auto cell = [ =, &walls ](int i) __attribute__((always_inline)) {
+        const Real k0 = old_k[i], s0 = old_second[i], nut = eddy[i];
+        const VelocityGradient v = row(i);
+        Real strain2 = strain_squared(v), produced = nut * strain2;
+        if constexpr (beside_wall) {
+          const WallShear shear = walls.shear(i, j, k, k0, nu);
+          strain2 = shear.strain2;
+          produced = shear.produced;
+        }
+        const Real by_volume = dt * inv_volume[i] * inv_jk;
+        const Real k_carried = k0 - by_volume * b0[i], s_carried = s0 - by_volume * b1[i];
+        SourcePoint p{k0, s0, k_carried, s_carried, strain2, produced, nut, Real(0), Real(0), Real(0)};
+        if constexpr (kSst) {
+          p.f1 = blending[i];
+          p.gradients = product(i);
+        }
+        if constexpr (kRound && !beside_wall) p.stretching = vortex_stretching(v);
         const auto [k1, s1] = advance_sources<kSst, kRound>(p, dt);
-        out_k[i] = unfinished ? k1 - p.k : positive_sum(p.k, k1 - p.k);
-        out_dissipation[i] =
-            unfinished ? s1 - p.dissipation : positive_sum(p.dissipation, s1 - p.dissipation);
-        const Real rate_of_strain = std::sqrt(p.strain2), kn = unfinished ? p.k : out_k[i],
-                   sn = unfinished ? p.dissipation : out_dissipation[i];
+        out_k[i] = unfinished ? k1 - k0 : positive_sum(k0, k1 - k0);
+        out_dissipation[i] = unfinished ? s1 - s0 : positive_sum(s0, s1 - s0);
+        const Real rate_of_strain = std::sqrt(strain2), kn = unfinished ? k0 : out_k[i],
+                   sn = unfinished ? s0 : out_dissipation[i];
         if constexpr (kSst) {
           using namespace k_omega_sst;
           const Real d = std::min(std::min(distance_x[i], distance_jk), from_solid[i]);
@@ -127,35 +142,22 @@ void transport(const Grid& grid, const ScalarFlux<kSst>& face, const std::array<
               std::min(k_epsilon::eddy_viscosity(kn, sn, k_epsilon::longest_time(rate_of_strain)), most);
         }
       };
-      const auto point = [=](int i) __attribute__((always_inline)) {
-        const Real k0 = old_k[i], s0 = old_second[i], nut = eddy[i];
-        const VelocityGradient v = row(i);
-        const Real strain2 = strain_squared(v);
-        const Real by_volume = dt * inv_volume[i] * inv_jk;
-        const Real k_carried = k0 - by_volume * b0[i], s_carried = s0 - by_volume * b1[i];
-        SourcePoint p{k0, s0, k_carried, s_carried, strain2, nut * strain2, nut, Real(0), Real(0), Real(0)};
-        if constexpr (kSst) {
-          p.f1 = blending[i];
-          p.gradients = product(i);
-        }
-        if constexpr (kRound) p.stretching = vortex_stretching(v);
-        return p;
-      };
-      for_each_lane(
-          0, nx, [=](int i) __attribute__((always_inline)) { finish(i, point(i)); });
-      walls.for_each_in_row(j, k, [&](int i) {
-        SourcePoint p = point(i);
-        const WallShear shear = walls.shear(i, j, k, p.k, nu);
-        p.strain2 = shear.strain2;
-        p.produced = shear.produced;
-        p.stretching = Real(0);
-        finish(i, p);
-      });
+      if constexpr (beside_wall) walls.for_each_in_row(j, k, cell);
+      else for_each_lane(0, nx, cell);
     };
-    using Yes = std::true_type;  // decided outside the loop: it would not vectorise
-    using No = std::false_type;
-    if (grid.axisymmetric()) out.unfinished ? update(Yes{}, Yes{}) : update(Yes{}, No{});
-    else out.unfinished ? update(No{}, Yes{}) : update(No{}, No{});
+    // Decided outside the loop: it would not vectorise.
+    const auto choose = [&](auto beside_wall) {
+      using Yes = std::true_type;
+      using No = std::false_type;
+      if (grid.axisymmetric())
+        out.unfinished ? update(Yes{}, Yes{}, beside_wall) : update(Yes{}, No{}, beside_wall);
+      else out.unfinished ? update(No{}, Yes{}, beside_wall) : update(No{}, No{}, beside_wall);
+    };
+    choose(std::false_type{});
+    if (walls.beside_row(j, k)) [&]() __attribute__((noinline)) {
+        choose(std::true_type{});
+      }
+    ();
   });
 }
 
