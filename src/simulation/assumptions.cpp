@@ -55,42 +55,41 @@ std::string reason(const Case& c, const std::string& path, const Key& key) {
   return text;
 }
 
+/// visit(section, number of its table, key, path) for every key of a case.
+template <class Visit>
+void for_each_key(Case& c, const Visit& visit) {
+  for (const Section& s : sections(c))
+    for (std::size_t n = 0; n < s.count(); ++n) {
+      const std::string table = s.repeated ? fmt::format("{}.{}", s.name, n) : s.name;
+      for (const Key& key : s.keys(n)) visit(s, n, key, table + "." + key.name);
+    }
+}
+
 }  // namespace
 
 std::vector<output::Input> inputs(const Case& original) {
   Case c = original;  // the schema binds to a case it could change
   std::vector<output::Input> list;
-  for (const Section& s : sections(c)) {
-    if (changes_no_result(s.name)) continue;
-    for (std::size_t n = 0; n < s.count(); ++n) {
-      const std::string table = s.repeated ? fmt::format("{}.{}", s.name, n) : s.name;
-      for (const Key& key : s.keys(n)) {
-        const std::string path = table + "." + key.name;
-        if (!c.given.contains(path) || path == "run.title" || key.name == "name") continue;
-        const auto* number = std::get_if<double*>(&key.slot);
-        const bool supply = number && key.dimension == Dimension::pressure_absolute && s.name == "valve";
-        list.push_back({key.help,
-                        supply ? format_quantity(**number - c.environment.pressure, Dimension::pressure_gauge)
-                               : plain(value_text(key)),
-                        path});
-      }
-    }
-  }
+  for_each_key(c, [&](const Section& s, std::size_t, const Key& key, const std::string& path) {
+    if (changes_no_result(s.name) || !c.given.contains(path) || path == "run.title" || key.name == "name")
+      return;
+    const auto* number = std::get_if<double*>(&key.slot);
+    const bool supply = number && key.dimension == Dimension::pressure_absolute && s.name == "valve";
+    list.push_back({key.help,
+                    supply ? format_quantity(**number - c.environment.pressure, Dimension::pressure_gauge)
+                           : plain(value_text(key)),
+                    path});
+  });
   return list;
 }
 
 std::vector<output::Assumption> assumptions(const Case& original) {
   Case c = original;  // the schema binds to a case it could change
   std::vector<output::Assumption> list;
-  for (const Section& s : sections(c))
-    for (std::size_t n = 0; n < s.count(); ++n) {
-      const std::string table = s.repeated ? fmt::format("{}.{}", s.name, n) : s.name;
-      for (const Key& key : s.keys(n)) {
-        const std::string path = table + "." + key.name;
-        if (!key.decisive || c.given.contains(path) || !acts(original, s.name, n, key.name)) continue;
-        list.push_back({key.help, plain(value_text(key)), reason(original, path, key), path});
-      }
-    }
+  for_each_key(c, [&](const Section& s, std::size_t n, const Key& key, const std::string& path) {
+    if (!key.decisive || c.given.contains(path) || !acts(original, s.name, n, key.name)) return;
+    list.push_back({key.help, plain(value_text(key)), reason(original, path, key), path});
+  });
   return list;
 }
 

@@ -69,8 +69,8 @@ class GridWalls {
     Real count = 0;
     const Real star = wall_law::kQuarterCmu * std::sqrt(k);
     for_each_wall(i, j, k_index, [&](int, Real y, Real speed) {
-      const Real stress = speed * wall_law::conductance(speed, y, nu, k, Real(0)), y_star = star * y / nu;
-      const bool turbulent = wall_law::u_plus(y_star, Real(0)) < y_star;  // above the viscous layer
+      const Real stress = speed * wall_law::conductance(speed, y, nu, k, Real(0));
+      const bool turbulent = wall_law::beyond_viscous_layer(y, nu, k, Real(0));
       const Real height = wall_law::kKappa * y;
       sum.produced += turbulent ? stress * star / height : Real(0);
       sum.strain2 += turbulent ? stress / (height * height) : (speed / y) * (speed / y);

@@ -34,8 +34,8 @@ SourceResult advance_wall_sources(const Grid& grid, const CutCells& cut, const C
                speed = norm(along_wall({v[0] - solid[0], v[1] - solid[1], v[2] - solid[2]}, w.area));
     const Real stress = speed * wall_law::conductance(speed, y, nu, p.k, w.roughness);
     area += a;
-    const Real star = wall_law::kQuarterCmu * std::sqrt(p.k), y_star = star * y / nu;
-    if (wall_law::u_plus(y_star, star * w.roughness / nu) < y_star)  // above the viscous layer
+    const Real star = wall_law::kQuarterCmu * std::sqrt(p.k);
+    if (wall_law::beyond_viscous_layer(y, nu, p.k, w.roughness))
       at_wall += a * stress * star / (wall_law::kKappa * y);
   });
   p.strain2 = strain_squared(gradient_row(grid, u, c.j, c.k)(c.i));

@@ -38,6 +38,12 @@ inline Real conductance(Real u, Real y, Real nu, Real k, Real roughness) {
   return std::max({by_k, u > Real(1e-20) ? by_u : Real(0), nu / y});
 }
 
+/// Whether a distance lies beyond the viscous layer of a wall with this k: turbulence is produced there.
+inline bool beyond_viscous_layer(Real y, Real nu, Real k, Real roughness) {
+  const Real star = kQuarterCmu * std::sqrt(k), y_star = star * y / nu;
+  return u_plus(y_star, star * roughness / nu) < y_star;
+}
+
 /// Dissipation of k beside a wall where production balances it, m2/s3; inside the viscous layer its own
 /// value.
 inline Real dissipation(Real k, Real y, Real nu) {
