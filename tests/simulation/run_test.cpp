@@ -396,6 +396,59 @@ report = false
   }
 }
 
+/// Gas that slows down in a channel does so as liquid does, by either method: where k was produced by
+/// differences across the walls they stopped it within seconds.
+TEST(Run, GasInAChannelHasTheFrictionOfItsWalls) {
+  const auto momentum_left = [](const char* model, const char* solver, const char* seconds) {
+    const Case c = parse_case(fmt::format(R"(
+[run]
+end_time = "{} s"
+[environment]
+gravity = ["0 m/s2", "0 m/s2", "0 m/s2"]
+[fluid]
+viscosity = "0.0006 Pa s"
+[flow]
+solver = "{}"
+turbulence = "{}"
+[grid.x]
+points = ["0 m", "0.4 m"]
+cells = [4]
+[grid.y]
+points = ["-1 m", "1 m"]
+cells = [20]
+[grid.z]
+points = ["0 m", "0.4 m"]
+cells = [4]
+[boundary.x_min]
+type = "periodic"
+[boundary.x_max]
+type = "periodic"
+[boundary.z_min]
+type = "periodic"
+[boundary.z_max]
+type = "periodic"
+[[initial]]
+velocity = ["22 m/s", "0 m/s", "0 m/s"]
+k = "3 m2/s2"
+epsilon = "5 m2/s3"
+[output]
+report = false
+)",
+                                          seconds, solver, model),
+                              "channel");
+    return run(c).quantities["air_momentum_N_s"][0].get<double>() / (1.1839 * 0.32 * 22.0);
+  };
+  for (const char* model : {"k-epsilon", "k-omega-sst"}) {
+    const double liquid = momentum_left(model, "incompressible", "4"),
+                 gas = momentum_left(model, "compressible-piso", "4");
+    EXPECT_LT(liquid, 0.9) << model;
+    EXPECT_NEAR(1.0 - gas, 1.0 - liquid, 0.03 * (1.0 - liquid)) << model;
+  }
+  const double liquid = momentum_left("k-epsilon", "incompressible", "0.5"),
+               gas = momentum_left("k-epsilon", "compressible", "0.5");
+  EXPECT_NEAR(1.0 - gas, 1.0 - liquid, 0.06 * (1.0 - liquid));
+}
+
 /// In steps of a hundred crossings of a cell by sound nothing grows out of what the pressure equation leaves.
 TEST(Run, SlowGasStaysSlow) {
   const Case c = parse_case(R"toml(

@@ -212,6 +212,11 @@ bool Boundaries::is_wall(int face) const {
   return type == BoundaryType::wall || type == BoundaryType::moving_wall;
 }
 
+bool Boundaries::has_patches(int face) const {
+  const Face& f = face_[static_cast<std::size_t>(face)];
+  return std::any_of(f.handle.begin(), f.handle.end(), [&](Handle handle) { return handle != f.base; });
+}
+
 bool Boundaries::holds_gas_back(int face) const {
   const std::vector<Handle>& cells = face_[static_cast<std::size_t>(face)].handle;
   return std::any_of(cells.begin(), cells.end(), [&](Handle handle) {

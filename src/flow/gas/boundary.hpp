@@ -75,6 +75,7 @@ class Boundaries {
   /// First ghost layer of a derived field: that of the cell inside (periodic: of the far side).
   void extend(Field& field) const;
   bool is_wall(int face) const;  ///< apart from its patches
+  bool has_patches(int face) const;
   bool is_periodic(int axis) const;
   bool holds_gas_back(int face) const;  ///< somewhere: a wall, an inlet while it is shut
 

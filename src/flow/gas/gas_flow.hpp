@@ -149,8 +149,11 @@ class GasFlow {
  private:
   template <bool Sst, bool RoundJet>
   void run_turbulence(double dt, const Dilatation& dilatation);
+  template <bool Sst>
+  void apply_walls(Real dt);
   void set_turbulence_constants();
   void measure_walls();
+  std::array<bool, 6> has_law_of_wall_{};  ///< beside the edge of a disc it is the jet that shears
   std::array<std::vector<Real>, 3> wall_distance_;
   SolidDistance solid_distance_;  ///< SST
   bool started_ = false;

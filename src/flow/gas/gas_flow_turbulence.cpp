@@ -3,6 +3,9 @@
 
 #include "base/parallel.hpp"
 #include "flow/gas/gas_flow.hpp"
+#include "flow/turbulence/grid_walls.hpp"
+#include "flow/turbulence/sources.hpp"
+#include "flow/turbulence/wall_cell.hpp"
 
 namespace ejecta::gas {
 
@@ -25,6 +28,8 @@ void GasFlow::measure_walls() {
     std::vector<Real>& distance = wall_distance_[static_cast<std::size_t>(d)];
     distance.assign(static_cast<std::size_t>(axis.n + kRealLanes), SolidDistance::kNone);  // whole registers
     for (int side = 0; side < 2; ++side) {
+      has_law_of_wall_[static_cast<std::size_t>(2 * d + side)] =
+          grid_.active(d) && boundaries_.is_wall(2 * d + side) && !boundaries_.has_patches(2 * d + side);
       if (!grid_.active(d) || !boundaries_.is_wall(2 * d + side)) continue;
       const double wall = side ? axis.face.back() : axis.face.front();
       for (std::size_t i = 0; i < axis.centre.size(); ++i)
@@ -59,6 +64,35 @@ void GasFlow::run_turbulence(double dt, const Dilatation& dilatation) {
   for (const int c : {kK, kE}) std::swap(w_[static_cast<std::size_t>(c)], next_[static_cast<std::size_t>(c)]);
   boundaries_.extend(eddy_viscosity_);
   if constexpr (Sst) boundaries_.extend(f1_);
+  apply_walls<Sst>(Real(dt));  // next_ holds k and epsilon (omega) of before
+}
+
+/// Cells beside walls of the box after the sources: k is produced by the shear of the law of the wall, as
+/// differences across a wall are no gradients, its dissipation is in equilibrium.
+template <bool Sst>
+void GasFlow::apply_walls(Real dt) {
+  const GridWalls walls(grid_, has_law_of_wall_, {w_[kU].view(), w_[kV].view(), w_[kW].view()});
+  walls.for_each_cell([&](int i, int j, int k) {
+    const Real rho = w_[kRho](i, j, k), nu = Real(options_.viscosity) / rho;
+    const Real k0 = std::max(next_[kK](i, j, k), kMinimalK),
+               e0 = std::max(next_[kE](i, j, k), kMinimalDissipation);
+    const WallShear shear = walls.shear(i, j, k, k0, nu);
+    SourcePoint p{};
+    p.k = p.k_carried = k0;
+    p.dissipation = p.dissipation_carried = e0;
+    p.strain2 = shear.strain2;
+    p.produced = shear.produced;
+    p.eddy_viscosity = wall_eddy_viscosity<Sst>(k0, e0, nu);
+    p.f1 = 1;
+    const Real kn = advance_sources<Sst, false>(p, dt).k,
+               dissipation = walls.dissipation<Sst>(i, j, k, kn, nu);
+    w_[kK](i, j, k) = kn;
+    w_[kE](i, j, k) = dissipation;
+    u_[kK](i, j, k) = rho * kn;
+    u_[kE](i, j, k) = rho * dissipation;
+    eddy_viscosity_(i, j, k) = rho * wall_eddy_viscosity<Sst>(kn, dissipation, nu);
+    walls.shear_by(eddy_viscosity_.view(), i, j, k, kn, nu, rho);
+  });
 }
 
 void GasFlow::advance_turbulence(double dt, const Dilatation& dilatation, const CutCells& cut) {

@@ -14,6 +14,18 @@ namespace {
 using Cell = std::array<int, 3>;
 using Triple = std::array<Real, 3>;
 
+/// Length of the columns behind a face that counts at least, widths of a cell.
+constexpr Real kLeastColumn = Real(0.05);
+
+/// Part of a cell whose gradient along an axis is the difference across a face: columns of fluid from face to
+/// face have the mean of both differences, columns that end at a wall that of their own face alone. open,
+/// across: open parts of this face and of the one across.
+Real columns_at(Real open, Real across, Real fluid) {
+  const Real through = std::min(open, across);
+  const Real ending = open > across ? std::max(fluid - through, kLeastColumn * (open - across)) : Real(0);
+  return Real(0.5) * through + ending;
+}
+
 }  // namespace
 
 CutFlow::CutFlow(const Grid& grid, double viscosity, const std::array<bool, 6>& passable)
@@ -85,19 +97,24 @@ void CutFlow::list_open_faces(const CutCells& cut) {
     if (carrier.carrier != n) return;
     OpenFacesOf& faces = faces_of_[static_cast<std::size_t>(n)];
     faces = {6 * carrier.first_member, 0};
-    Triple area_along{0, 0, 0};
+    Triple total{0, 0, 0};
     OpenFacePart* const first = open_faces_.data() + faces.first;
     for_each_open_face(
         grid_, cut, carrier,
         [&](const CutCell& c, int d, const Cell& face, const Cell& beyond, Real sign, Real open, Real area) {
           const Metrics& m = grid_.metrics(d);
-          const int index = face[static_cast<std::size_t>(d)];
+          const std::size_t s = static_cast<std::size_t>(d);
+          const int index = face[s];
           const Real lower = m.weight[index], weight = sign > 0 ? Real(1) - lower : lower;
+          Cell across{c.i, c.j, c.k};
+          across[s] += sign < 0;
+          const Real part =
+              columns_at(open, Real(1) - cut.closed[s](across[0], across[1], across[2]), c.fluid);
           first[faces.count++] = {offset({c.i, c.j, c.k}), offset(beyond), d,
-                                  sign * open * area * m.inv_distance[index], sign * open * area * weight};
-          area_along[static_cast<std::size_t>(d)] += open * area;
+                                  sign * part * area * m.inv_distance[index], sign * open * area * weight};
+          total[s] += part * area;
         });
-    for (int f = 0; f < faces.count; ++f) first[f].slope /= area_along[static_cast<std::size_t>(first[f].d)];
+    for (int f = 0; f < faces.count; ++f) first[f].slope /= total[static_cast<std::size_t>(first[f].d)];
   });
 }
 

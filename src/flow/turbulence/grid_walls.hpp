@@ -78,6 +78,27 @@ class GridWalls {
     });
     return {sum.produced / count, sum.strain2 / count};
   }
+  /// Equilibrium of the dissipation (omega), that of the nearest wall in corners. k: m2/s2, nu: m2/s.
+  template <bool kSst>
+  Real dissipation(int i, int j, int k_index, Real k, Real nu) const {
+    Real most = 0;
+    for_each_wall(i, j, k_index, [&](int, Real y, Real) {
+      most =
+          std::max(most, kSst ? wall_law::specific_dissipation(k, y, nu) : wall_law::dissipation(k, y, nu));
+    });
+    return most;
+  }
+  /// Gives the ghosts of an eddy viscosity what makes the shear that of the law of the wall (Launder &
+  /// Spalding 1974); `density`: of a dynamic viscosity, kg/m3.
+  void shear_by(FieldView eddy_viscosity, int i, int j, int k_index, Real k, Real nu,
+                Real density = Real(1)) const {
+    for_each_wall(i, j, k_index, [&](int face, Real y, Real speed) {
+      const Real on_wall = density * (wall_law::conductance(speed, y, nu, k, Real(0)) * y - nu);
+      std::array<int, 3> ghost{i, j, k_index};
+      ghost[static_cast<std::size_t>(face / 2)] += face % 2 ? 1 : -1;
+      eddy_viscosity(ghost[0], ghost[1], ghost[2]) = Real(2) * on_wall - eddy_viscosity(i, j, k_index);
+    });
+  }
 
  private:
   bool beside(int d, int at) const {

@@ -209,27 +209,17 @@ void TwoEquation::measure_walls(const Boundaries& b) {
   }
 }
 
-/// Equilibrium of dissipation and eddy viscosity in the cells next to walls, that of the nearest in corners,
-/// and in the ghosts what makes the shear that of the law of the wall (Launder & Spalding 1974).
+/// Equilibrium of dissipation and eddy viscosity in the cells next to walls.
 void TwoEquation::apply_walls(const GridWalls& walls) {
-  const bool sst = model_ == TwoEquationModel::k_omega_sst;
-  walls.for_each_cell([&](int i, int j, int k) {
-    const Real kn = k_(i, j, k);
-    Real dissipation = 0;
-    walls.for_each_wall(i, j, k, [&](int, Real y, Real) {
-      dissipation = std::max(
-          dissipation, sst ? wall_law::specific_dissipation(kn, y, nu_) : wall_law::dissipation(kn, y, nu_));
+  const auto apply = [&](auto sst) {
+    walls.for_each_cell([&](int i, int j, int k) {
+      const Real kn = k_(i, j, k), dissipation = walls.dissipation<sst>(i, j, k, kn, nu_);
+      dissipation_(i, j, k) = dissipation;
+      nut_(i, j, k) = wall_eddy_viscosity<sst>(kn, dissipation, nu_);
+      walls.shear_by(nut_.view(), i, j, k, kn, nu_);
     });
-    dissipation_(i, j, k) = dissipation;
-    nut_(i, j, k) = sst ? wall_eddy_viscosity<true>(kn, dissipation, nu_)
-                        : wall_eddy_viscosity<false>(kn, dissipation, nu_);
-    walls.for_each_wall(i, j, k, [&](int face, Real y, Real speed) {
-      const Real on_wall = wall_law::conductance(speed, y, nu_, kn, Real(0)) * y - nu_;
-      std::array<int, 3> ghost{i, j, k};
-      ghost[static_cast<std::size_t>(face / 2)] += face % 2 ? 1 : -1;
-      nut_(ghost[0], ghost[1], ghost[2]) = Real(2) * on_wall - nut_(i, j, k);
-    });
-  });
+  };
+  model_ == TwoEquationModel::k_omega_sst ? apply(std::true_type{}) : apply(std::false_type{});
 }
 
 void TwoEquation::advance(const Boundaries& b, const std::array<ConstFieldView, 3>& u,
