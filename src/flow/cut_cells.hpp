@@ -18,6 +18,7 @@ struct CutCell {
   std::array<Real, 3> middle{};  ///< of its fluid, from that of the cell, m
   Real distance = 0;             ///< of its centre from the nearest surface, m; > 0 in the fluid
   std::array<Real, 3> normal{};  ///< of that surface, into the fluid
+  Real edge = 0;                 ///< how much of an edge of a body runs through it: 0 none, 1 a sharp one
   bool locked = false;           ///< bodies lock its fluid in: it has neither momentum nor pressure
   int carrier = -1;  ///< index of the cell that carries its momentum: itself, or of a small cell a
                      ///< neighbour; -1: none does (fluid locked in)

@@ -115,7 +115,7 @@ void CutMap::add_cut_cell(std::span<const Record> records, CutCells& out) {
   for (int d = 0; d < 3; ++d) c.normal[static_cast<std::size_t>(d)] = static_cast<Real>(normal[d]);
   double solid = 0.0;
   for (const Record& r : records) solid += 1.0 - part_fluid(r);
-  edge_of_.push_back(records.size() == 1 ? nearest.edge : 0.0f);
+  c.edge = records.size() == 1 ? nearest.edge : 0.0f;
   c.fluid = static_cast<Real>(std::max(1.0 - solid, 1e-4));
   c.first_wall = static_cast<int>(out.walls.size());
   const std::array<Metrics, 3>& m = grid_.metrics();
@@ -341,9 +341,9 @@ void CutMap::close_dead_ends(CutCells& out) const {
     Real sign;  // +1: the face is its upper one
   };
   std::vector<Change> changes;
-  for (std::size_t n = 0; n < edge_of_.size(); ++n) {
+  for (std::size_t n = 0; n < out.cells.size(); ++n) {
     const CutCell& c = out.cells[n];
-    if (!(edge_of_[n] > 0) || c.locked) continue;
+    if (!(c.edge > Real(0)) || c.locked) continue;
     for_each_neighbour(c, out, [&](int index, int side, const int* cell, double open) {
       if (index < 0 || open < kPassage) return;
       if (index > 0 && out.cells[static_cast<std::size_t>(index - 1)].carrier == c.carrier) return;
@@ -355,7 +355,7 @@ void CutMap::close_dead_ends(CutCells& out) const {
       if (ends < double(kNothing)) return;
       const double room = room_behind(double(c.fluid), open, through);
       const double along = double(c.normal[static_cast<std::size_t>(side / 2)]);
-      const double share = double(edge_of_[n]) * (out.small(n) ? 1.0 : 1.0 - along * along);
+      const double share = double(c.edge) * (out.small(n) ? 1.0 : 1.0 - along * along);
       CutFace f;
       f.d = side / 2;
       f.i = c.i, f.j = c.j, f.k = c.k;

@@ -382,7 +382,6 @@ void CutMap::map(std::span<const Body> bodies, std::span<const double> roughness
   clear(out);
   records_.clear();
   ghost_region_.clear();
-  edge_of_.clear();
   used_ = 0;
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     std::array<int, 3> images{};

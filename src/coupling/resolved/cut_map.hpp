@@ -95,7 +95,6 @@ class CutMap {
   std::vector<std::vector<Record>> planes_;  // scratch, one list a plane
   std::vector<Record> records_;
   std::vector<int> ghost_region_;  // of every ghost of the map
-  std::vector<float> edge_of_;     // of cells, as in Record
   struct FacePart {
     std::int64_t key;
     CutFace face;

@@ -14,18 +14,6 @@ namespace {
 using Cell = std::array<int, 3>;
 using Triple = std::array<Real, 3>;
 
-/// Length of the columns behind a face that counts at least, widths of a cell.
-constexpr Real kLeastColumn = Real(0.05);
-
-/// Part of a cell whose gradient along an axis is the difference across a face: columns of fluid from face to
-/// face have the mean of both differences, columns that end at a wall that of their own face alone. open,
-/// across: open parts of this face and of the one across.
-Real columns_at(Real open, Real across, Real fluid) {
-  const Real through = std::min(open, across);
-  const Real ending = open > across ? std::max(fluid - through, kLeastColumn * (open - across)) : Real(0);
-  return Real(0.5) * through + ending;
-}
-
 }  // namespace
 
 CutFlow::CutFlow(const Grid& grid, double viscosity, const std::array<bool, 6>& passable)
@@ -68,7 +56,7 @@ Vec3 CutFlow::begin(const CutCells& cut, const std::array<ConstFieldView, 3>& u,
   kept_.resize(cut.cells.size());
   sums_.resize(cut.cells.size());
   values_.resize(cut.ghosts.size());
-  list_open_faces(cut);
+  list_differences(cut);
   step_ = static_cast<Real>(dt);
   held_.resize(cut.ghosts.size());
   for (std::size_t n = 0; n < cut.ghosts.size(); ++n)
@@ -85,52 +73,6 @@ void CutFlow::resume() {
     for (int j = 0; j < grid_.ny(); ++j)
       for (int i = 0; i < grid_.nx(); ++i)
         if (part(i, j, k) != Real(1)) touched_.push_back({i, j, k});
-}
-
-void CutFlow::list_open_faces(const CutCells& cut) {
-  faces_of_.resize(cut.cells.size());
-  open_faces_.resize(6 * cut.members.size());
-  const ConstFieldView at = carried();
-  const auto offset = [&](const Cell& c) { return c[0] + c[1] * at.sy + c[2] * at.sz; };
-  for_each_index(static_cast<int>(cut.cells.size()), [&](int n) {
-    const CutCell& carrier = cut.cells[static_cast<std::size_t>(n)];
-    if (carrier.carrier != n) return;
-    OpenFacesOf& faces = faces_of_[static_cast<std::size_t>(n)];
-    faces = {6 * carrier.first_member, 0};
-    Triple total{0, 0, 0};
-    OpenFacePart* const first = open_faces_.data() + faces.first;
-    for_each_open_face(
-        grid_, cut, carrier,
-        [&](const CutCell& c, int d, const Cell& face, const Cell& beyond, Real sign, Real open, Real area) {
-          const Metrics& m = grid_.metrics(d);
-          const std::size_t s = static_cast<std::size_t>(d);
-          const int index = face[s];
-          const Real lower = m.weight[index], weight = sign > 0 ? Real(1) - lower : lower;
-          Cell across{c.i, c.j, c.k};
-          across[s] += sign < 0;
-          const Real part =
-              columns_at(open, Real(1) - cut.closed[s](across[0], across[1], across[2]), c.fluid);
-          first[faces.count++] = {offset({c.i, c.j, c.k}), offset(beyond), d,
-                                  sign * part * area * m.inv_distance[index], sign * open * area * weight};
-          total[s] += part * area;
-        });
-    for (int f = 0; f < faces.count; ++f) first[f].slope /= total[static_cast<std::size_t>(first[f].d)];
-  });
-}
-
-CutFlow::Gradient CutFlow::gradient(const CutCell& carrier, ConstFieldView p) const {
-  const OpenFacesOf& faces = faces_of_[static_cast<std::size_t>(carrier.carrier)];
-  Gradient g{};
-  Triple balance{0, 0, 0};
-  for (int f = faces.first; f < faces.first + faces.count; ++f) {
-    const OpenFacePart& face = open_faces_[static_cast<std::size_t>(f)];
-    const Real change = p.origin[face.beyond] - p.origin[face.here];
-    g.value[static_cast<std::size_t>(face.d)] += face.slope * change;
-    balance[static_cast<std::size_t>(face.d)] += face.pull * change;
-  }
-  const Real volume = carrier.carried * static_cast<Real>(grid_.volume(carrier.i, carrier.j, carrier.k));
-  for (std::size_t d = 0; d < 3; ++d) g.beyond[d] = volume * g.value[d] - balance[d];
-  return g;
 }
 
 void CutFlow::rub(CutCells& cut, const CutCell& c, const WallTurbulence& turbulence, Real step, double weight,
@@ -218,7 +160,7 @@ Vec3 CutFlow::predict(CutCells& cut, const MomentumTerms& t, const WallTurbulenc
     Triple base, v;
     for (std::size_t e = 0; e < 3; ++e) {
       Real rate = t.acceleration[e] - balance[e] / volume - g[e];
-      const Real shifted = moves == Triple{} ? Real(0) : dot(moves, gradient(c, t.u[e]).value);
+      const Real shifted = moves == Triple{} ? Real(0) : dot(moves, mean_gradient(c, t.u[e]));
       rate -= shifted;
       if (t.source[e].origin) rate += t.source[e](c.i, c.j, c.k);
       base[e] = t.b * here[e];

@@ -82,13 +82,15 @@ class CutFlow {
   /// counted `weight` times (density, kg/m3) in cut.friction_impulse.
   void rub(CutCells& cut, const CutCell& carrier, const WallTurbulence& turbulence, Real step, double weight,
            std::array<Real, 3>& velocity) const;
-  /// Of p in a carrier: the mean over its open faces, exact where p is linear. What volume times gradient
-  /// asks of the walls beyond the pressure of their cell makes up for the rest of it: m4/s2 for p over
-  /// density.
+  /// Of p in a carrier, exact where p is linear: the mean over the columns of its fluid, and what walls at
+  /// edges of bodies take beyond the pressure of their cell. What volume times gradient asks of the walls
+  /// beyond the pressure of their cell makes up for the rest of it: m4/s2 for p over density.
   struct Gradient {
     std::array<Real, 3> value, beyond;
   };
   Gradient gradient(const CutCell& carrier, ConstFieldView p) const;
+  /// The mean over the columns alone, of what is no pressure.
+  std::array<Real, 3> mean_gradient(const CutCell& carrier, ConstFieldView f) const;
   /// Velocity of the middle of the fluid that a carrier is balanced over, as walls sweep it, m/s.
   std::array<Real, 3> middle_moves(const CutCells& cut, const CutCell& carrier) const;
   /// What the velocity along d in the middle of the open part of an inner face has beyond that in the middle
@@ -103,16 +105,19 @@ class CutFlow {
     std::array<int, 3> face;
     double sign, area;  ///< +1 where the box lies above it; closed area, m2
   };
-  /// What the difference across an open face adds to the gradient of a carrier, by cells of a field.
-  struct OpenFacePart {
+  /// What the difference between two cells adds to the gradient of a carrier, by entries of a field.
+  struct Difference {
     std::ptrdiff_t here, beyond;
     int d;
-    Real slope, pull;  ///< to the mean over open faces, 1/m; to the balance of the pressure, m2
+    Real slope, pull;  ///< to the gradient, 1/m; to the balance of the pressure on open faces, m2
   };
-  struct OpenFacesOf {
-    int first = 0, count = 0;
+  /// Differences across the open faces of a carrier, and after them those of its walls at edges.
+  struct DifferencesOf {
+    int first = 0, faces = 0, all = 0;
   };
-  void list_open_faces(const CutCells& cut);
+  void list_differences(const CutCells& cut);
+  void list_walls_at_edge(const CutCells& cut, const CutCell& c, Difference* first, int& count) const;
+  std::array<Real, 3> sum_of_differences(int first, int last, ConstFieldView f) const;
   void list_closed_ends(const CutCells& cut);
   /// Whether a small cell lies between walls so close that no cell of the fluid tells what moves in it.
   bool thin(const CutCells& cut, const GhostCell& g) const;
@@ -138,10 +143,10 @@ class CutFlow {
   std::vector<std::array<Real, 3>> values_;           // scratch of extend
   std::vector<Real> scalars_;                         // scratch of extend_to_solids
   std::vector<ClosedEnd> closed_ends_;
-  std::vector<OpenFacePart> open_faces_;
-  std::vector<OpenFacesOf> faces_of_;  // of cut.cells, those that carry
-  std::vector<Real> open_velocity_;    // of cut.faces while they are closed
-  std::vector<Vec3> sums_;             // scratch
+  std::vector<Difference> differences_;
+  std::vector<DifferencesOf> differences_of_;  // of cut.cells, those that carry
+  std::vector<Real> open_velocity_;            // of cut.faces while they are closed
+  std::vector<Vec3> sums_;                     // scratch
 };
 
 }  // namespace ejecta

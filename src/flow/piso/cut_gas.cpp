@@ -185,7 +185,7 @@ void CutGas::balance(CutCells& cut, const std::array<Block, 3>& flux, const Bloc
     if (moves != std::array<Real, 3>{}) {
       const Real before = dot(v, v);
       for (std::size_t d = 0; d < 3; ++d) {
-        const Real change = -dt * dot(moves, flow_.gradient(c, middle[kU + d].view()).value);
+        const Real change = -dt * dot(moves, flow_.mean_gradient(c, middle[kU + d].view()));
         v[d] += change;
         shifted_[n].momentum[int(d)] = double(rho) * volume * double(change);
       }
