@@ -26,7 +26,7 @@ const std::array<Part, 17> parts{{
     {sense_walls, {"wall", "material", "splitter"}},
     {sense_sorter,
      {"run", "environment", "flow", "grid", "boundary", "valve", "jet", "launch", "splitter", "body"}},
-    {sense_expectations, {"expect", "convergence", "exact", "flow"}},
+    {sense_expectations, {"expect", "convergence", "exact", "flow", "probe", "body", "stream", "splitter"}},
     {sense_overlaps, {"body", "launch"}},
     {sense_records, {"grid", "flow", "probe", "line", "slice"}},
     {sense_map,

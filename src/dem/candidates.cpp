@@ -5,7 +5,9 @@
 namespace ejecta {
 namespace {
 
-constexpr double kShallow = 0.9;  // of a ball's radius: nearer to a plane, it has dented it deeply
+constexpr double kParallel = 1 - 1e-10;  // cosine: surfaces that lie on each other
+constexpr double kSameHeight = 1e-6;     // of a ball's radius
+constexpr double kShallow = 0.9;         // of a ball's radius: nearer to a plane, it has dented it deeply
 
 bool near_solid(const NeighbourSearch::Item& item, const Polytope& solid, double skin) {
   const double reach = item.radius + skin;
@@ -76,7 +78,7 @@ void CandidateSearch::put(std::size_t item, const PartKey& wall, int balls) {
 /// Balls meet triangles, polytopes the regions they lie in; but where nothing else of the surface is near a
 /// ball than the inside of a flat piece, it is a plane.
 void CandidateSearch::list_surface(const Wall& wall, int index, const Domain& domain, std::size_t n,
-                                   int balls, double skin, const BallContacts* before) {
+                                   int balls, double skin, bool as_plane, const BallContacts* before) {
   const NeighbourSearch::Item& item = items_[n];
   const Surface& surface = *wall.surface;
   const double reach = item.radius + skin;
@@ -95,7 +97,7 @@ void CandidateSearch::list_surface(const Wall& wall, int index, const Domain& do
   const auto region_of = [&](int t) { return surface.triangles()[static_cast<std::size_t>(t)].region; };
   if (part_of_[n].index < balls) {
     const int first = region_of(near_.front());
-    if (std::all_of(near_.begin(), near_.end(), [&](int t) { return region_of(t) == first; }) &&
+    if (as_plane && std::all_of(near_.begin(), near_.end(), [&](int t) { return region_of(t) == first; }) &&
         list_plane(wall, first, domain, n, reach, before))
       return;
     for (std::size_t k = 0; k < near_.size(); ++k) {
@@ -140,26 +142,94 @@ bool CandidateSearch::list_plane(const Wall& wall, int r, const Domain& domain, 
   return true;
 }
 
+/// Walls that lie on each other in one plane push a ball once. Of planes that look the same way the highest
+/// stands for all, of those as high the first; what of other surfaces lies wholly under a wall that is a
+/// plane is covered by it. Where another surface that ends near the ball lies in a flat region, both are
+/// looked at triangle by triangle, as one surface.
+void CandidateSearch::drop_doubles(std::span<const Wall> walls, const Domain& domain, std::size_t n,
+                                   int balls, double skin, const BallContacts* before,
+                                   std::size_t first_plane, std::size_t first_solid) {
+  const NeighbourSearch::Item item = items_[n];
+  const double slack = kSameHeight * item.radius;
+  flats_.clear();
+  for (std::size_t k = first_plane; k < planes_.size(); ++k) {
+    const int plane = planes_[k].second;
+    int w = static_cast<int>(walls.size()) - 1;
+    while (walls[static_cast<std::size_t>(w)].first_plane > plane) --w;
+    const Wall& wall = walls[static_cast<std::size_t>(w)];
+    HalfSpace at{wall.normal, wall.offset};
+    if (!wall.is_plane) {
+      at = wall.surface->regions()[static_cast<std::size_t>((plane - wall.first_plane) / 2)].plane;
+      if ((plane - wall.first_plane) % 2) at = {-at.normal, -at.offset};
+    }
+    flats_.push_back({at.normal, at.normal.dot(item.centre) - at.offset, w, plane});
+  }
+  for (std::size_t k = 0; k < flats_.size(); ++k)
+    for (std::size_t m = 0; m < flats_.size() && flats_[k].kept; ++m) {
+      const Flat &low = flats_[k], &high = flats_[m];
+      if (m == k || !high.kept || !(low.normal.dot(high.normal) > kParallel)) continue;
+      flats_[k].kept = low.height < high.height - slack || (low.height <= high.height + slack && k < m);
+    }
+  const auto corners_of = [&](const SolidPair& p) -> const Surface::Triangle& {
+    return walls[static_cast<std::size_t>(p.b.index)]
+        .surface->triangles()[static_cast<std::size_t>(p.b.solid)];
+  };
+  const std::size_t listed = solids_.size();
+  for (Flat& f : flats_) {
+    if (!f.kept) continue;
+    const Vec3 foot = item.centre - f.height * f.normal;
+    const auto above = [&](const Vec3& p) { return f.normal.dot(p - foot); };
+    const auto lies_in = [&](const SolidPair& p) {
+      const Surface::Triangle& t = corners_of(p);
+      return p.b.index != f.wall && std::abs(t.normal.dot(f.normal)) > kParallel &&
+             std::abs(above(t.corners[0])) <= slack;
+    };
+    const auto from = solids_.begin() + static_cast<std::ptrdiff_t>(first_solid);
+    if (walls[static_cast<std::size_t>(f.wall)].is_plane) {
+      solids_.erase(std::remove_if(from, solids_.end(),
+                                   [&](const SolidPair& p) {
+                                     const auto& corners = corners_of(p).corners;
+                                     return std::all_of(corners.begin(), corners.end(),
+                                                        [&](const Vec3& c) { return above(c) <= slack; });
+                                   }),
+                    solids_.end());
+    } else if (std::any_of(from,
+                           from + static_cast<std::ptrdiff_t>(std::min(listed, solids_.size()) - first_solid),
+                           lies_in)) {
+      f.kept = false;
+      list_surface(walls[static_cast<std::size_t>(f.wall)], f.wall, domain, n, balls, skin, false, before);
+    }
+  }
+  planes_.resize(first_plane);
+  for (const Flat& f : flats_)
+    if (f.kept) planes_.emplace_back(part_of_[n].index, f.plane);
+}
+
 void CandidateSearch::list_walls(std::span<const Wall> walls, const Domain& domain, int balls, double skin,
                                  const BallContacts* before) {
   for (std::size_t n = 0; n < items_.size(); ++n) {
     if (!part_of_[n].can_be_pushed) continue;
     const NeighbourSearch::Item& item = items_[n];
     const bool ball = part_of_[n].index < balls;
+    const std::size_t first_plane = planes_.size(), first_solid = solids_.size();
     for (int w = 0; w < static_cast<int>(walls.size()); ++w) {
       const Wall& wall = walls[static_cast<std::size_t>(w)];
+      if (!ball && wall.covered) continue;
       if (wall.is_plane) {
         if (part_of_[n].image || !(wall.normal.dot(item.centre) - wall.offset < item.radius + skin)) continue;
         if (ball) planes_.emplace_back(part_of_[n].index, wall.first_plane);
         else put(n, {PartKind::wall_plane, w, 0}, balls);
       } else if (ball || wall.solids.empty()) {
-        list_surface(wall, w, domain, n, balls, skin, before);
+        list_surface(wall, w, domain, n, balls, skin, true, before);
       } else {
         for (int s = 0; s < static_cast<int>(wall.solids.size()); ++s)
           if (near_solid(item, wall.solids[static_cast<std::size_t>(s)], skin))
             put(n, {PartKind::wall_solid, w, s}, balls);
       }
     }
+    const std::size_t planes = planes_.size() - first_plane, solids = solids_.size() - first_solid;
+    if (ball && planes > 0 && planes + solids > 1)
+      drop_doubles(walls, domain, n, balls, skin, before, first_plane, first_solid);
   }
 }
 

@@ -40,7 +40,10 @@ class CandidateSearch {
   void list_walls(std::span<const Wall> walls, const Domain& domain, int balls, double skin,
                   const BallContacts* before);
   void list_surface(const Wall& wall, int index, const Domain& domain, std::size_t item, int balls,
-                    double skin, const BallContacts* before);
+                    double skin, bool as_plane, const BallContacts* before);
+  void drop_doubles(std::span<const Wall> walls, const Domain& domain, std::size_t item, int balls,
+                    double skin, const BallContacts* before, std::size_t first_plane,
+                    std::size_t first_solid);
   bool list_plane(const Wall& wall, int region, const Domain& domain, std::size_t item, double reach,
                   const BallContacts* before);
   void put(std::size_t item, const PartKey& wall, int balls);
@@ -52,6 +55,14 @@ class CandidateSearch {
   std::vector<SolidPair> solids_;
   std::vector<int> near_;
   std::vector<double> gaps_;  // m, between a ball and the triangles near it
+  /// A plane that a ball is listed with.
+  struct Flat {
+    Vec3 normal;
+    double height = 0.0;  // m, of the ball's centre above it
+    int wall = 0, plane = 0;
+    bool kept = true;
+  };
+  std::vector<Flat> flats_;
 };
 
 }  // namespace ejecta

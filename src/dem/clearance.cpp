@@ -18,7 +18,7 @@ constexpr double kTouching = 1e-3;  // of the size: bodies that overlap less onl
 double Particles::way_out(const SolidPair& pair, const Touch& touch) const {
   if (pair.a.kind != PartKind::polytope) return touch.overlap;
   const auto reach = [](const Polytope& solid, const Vec3& along) {
-    return along.dot(support_polytope(solid, along));
+    return along.dot(support_exact(solid, along));
   };
   const auto reach_of = [&](const PartKey& part, int body, const Vec3& along) {
     const Body& b = bodies_[static_cast<std::size_t>(body)];

@@ -192,10 +192,11 @@ struct Twist {
 /// what acts on a, N m; `spin`: angular velocity of a relative to b, rad/s. Twisting about the normal: second
 /// moment a^2/2 times tangential stiffness and drag, cut where all of the patch slides, 2/3 mu F_n a, as the
 /// force is. Tilting: second moment a^2/4 times the dashpot (the spring is in the place of the contact
-/// point), cut at F_n a, beyond which the load would lie outside the patch.
+/// point), cut at F_n a, beyond which the load would lie outside the patch. `rocking`: what part of the
+/// tilting moves the pressure in the patch.
 inline Triple<double> patch_moment(double a, const Triple<double>& normal, const PairConstants<double>& p,
-                                   const ContactForce<double>& f, const Triple<double>& spin, double dt,
-                                   Twist& twist) {
+                                   const ContactForce<double>& f, const Triple<double>& spin, double rocking,
+                                   double dt, Twist& twist) {
   const double stiffness = 0.5 * f.tangential_stiffness * a * a, drag = 0.5 * a * a * f.drag;
   if (!(stiffness > 0)) return {};
   const double pressing = larger(f.normal, 0.0), twisting = dot(spin, normal);
@@ -210,7 +211,7 @@ inline Triple<double> patch_moment(double a, const Triple<double>& normal, const
     about_normal = most;
   }
   const Triple<double> tilting = spin - twisting * normal;
-  const double damping = 0.25 * a * a * f.dashpot, size = damping * root(dot(tilting, tilting));
+  const double damping = rocking * 0.25 * a * a * f.dashpot, size = damping * root(dot(tilting, tilting));
   const double cut = size > pressing * a ? pressing * a / size : 1.0;
   return about_normal * normal + (-cut * damping) * tilting;
 }

@@ -76,6 +76,8 @@ Touch touch_of(const Overlap& o, double size, const Mat3& rotation, const Vec3& 
   t.overlap = 2.0 * o.volume / reference;
   t.radius = reference * reference / (4.0 * kPi * o.volume);
   t.point = origin + rotation * o.centroid;
+  const Vec3 arm = rotation * (o.centroid - o.middle);
+  t.lean = o.volume / area * (arm - arm.dot(t.normal) * t.normal);
   t.patch_radius = std::sqrt(area / kPi);
   t.size = size;
   t.thickness = o.volume / area;
@@ -84,7 +86,7 @@ Touch touch_of(const Overlap& o, double size, const Mat3& rotation, const Vec3& 
 
 /// Whether the solid reaches beyond a plane.
 bool beyond(const Polytope& solid, const HalfSpace& plane) {
-  return plane.normal.dot(support_polytope(solid, plane.normal)) > plane.offset;
+  return plane.normal.dot(support_exact(solid, plane.normal)) > plane.offset;
 }
 
 /// Whether a face is of the far side, seen along `along`.
@@ -97,8 +99,8 @@ bool is_far(const Polytope::Face& f, const Vec3& along) { return f.normal.dot(al
 bool reaches_far_side(const Polytope& b, const Mat3& rotation, const Vec3& shift, const Vec3& out,
                       const Polytope& a) {
   const Vec3 along = rotation.transpose() * out;
-  const double deepest = out.dot(support_polytope(a, -out) - shift);
-  if (along.dot(support_polytope(b, along)) < deepest) return true;  // nothing is shared
+  const double deepest = out.dot(support_exact(a, -out) - shift);
+  if (along.dot(support_exact(b, along)) < deepest) return true;  // nothing is shared
   thread_local std::vector<char> is_near;
   is_near.assign(b.vertices.size(), false);
   for (const Polytope::Face& f : b.faces)
@@ -176,10 +178,60 @@ Overlap overlap_solids(const Polytope& a, const Polytope& b, const Mat3& rotatio
       Overlap o = overlap_cell(b, planes);
       o.area = -(rotation * o.area);
       o.centroid = rotation * o.centroid + shift;
+      o.middle = rotation * o.middle + shift;
       return o;
     }
   }
   return overlap_polytopes(a, b, rotation, shift);
+}
+
+/// What of a solid comes `depth` deep into something along `along` (axes of the solid): of a smooth one the
+/// cap, in `cap`.
+const Polytope& met_part(const Polytope& solid, const Vec3& along, double depth, Polytope& cap) {
+  constexpr double kMore = 1.001;  // its rim lies beyond what is shared
+  return solid.exact && cut_cap(*solid.exact, along, kMore * depth, cap) ? cap : solid;
+}
+
+/// A polytope that holds the smooth solid which the given one is inscribed in.
+Polytope grown(const Polytope& solid) {
+  Polytope p = solid;
+  p.exact.reset();
+  for (Vec3& v : p.vertices) v *= p.excess;
+  for (Polytope::Face& f : p.faces) f.offset *= p.excess;
+  p.centre *= p.excess;
+  p.radius *= p.excess;
+  return p;
+}
+
+/// As overlap_solids. Facets of smooth solids lie about the contact: where it pushed at the last step, or, of
+/// solids that have just met, where polytopes that hold them say; then again where the contact was found,
+/// until that is in the middle of them.
+Overlap overlap_smooth(const Polytope& a, const Polytope& b, const Mat3& rotation, const Vec3& shift,
+                       const Vec3& out) {
+  constexpr int kTurns = 4;
+  constexpr double kCentred = 1e-3;  // of the caps' angle, squared
+  if (!a.exact && !b.exact) return overlap_solids(a, b, rotation, shift, out);
+  Vec3 along = -out;  // from a to b, axes of a
+  if (out.isZero()) {
+    const Overlap coarse = overlap_polytopes(grown(a), grown(b), rotation, shift);
+    if (coarse.area.isZero()) return {};
+    along = -coarse.area.normalized();
+  }
+  thread_local Polytope cap_a, cap_b;
+  Overlap o;
+  for (int n = 0; n < kTurns; ++n) {
+    const Vec3 back = rotation.transpose() * -along;
+    const double depth = along.dot(support_exact(a, along) - rotation * support_exact(b, back) - shift);
+    if (!(depth > 0)) return {};
+    o = overlap_solids(met_part(a, along, depth, cap_a), met_part(b, back, depth, cap_b), rotation, shift,
+                       out.isZero() ? out : Vec3(-along));
+    if (!(o.volume > 0)) return {};
+    const Vec3 found = -o.area.normalized();
+    const double turned = (found - along).squaredNorm();
+    along = found;
+    if (turned < kCentred * depth / std::min(a.radius, b.radius)) break;
+  }
+  return o;
 }
 
 /// Of a polytope with what lies behind a region of a surface; z is measured from its plane. `side`: on which
@@ -197,10 +249,11 @@ Touch touch_region(const PolytopePart& part, const Body& body, const Vec3& posit
     side = height < 0 ? -1 : 1;
   }
   const bool ghost = side < 0 && !surface.two_sided();
-  if (!known) {  // most regions near a body are not touched
-    const Vec3 down = turn.transpose() * Vec3(-side * region.plane.normal);
-    if (down.dot(support_polytope(solid, down)) <= down.dot(solid.centre) + std::abs(height)) return {};
-  }
+  const Vec3 down = turn.transpose() * Vec3(-side * region.plane.normal);
+  const double depth = down.dot(support_exact(solid, down) - solid.centre) - side * height;
+  if (!(depth > 0)) return {};  // most regions near a body are not touched
+  thread_local Polytope cap;
+  const Polytope& met = met_part(solid, down, depth, cap);
   Overlap sum;
   thread_local std::vector<HalfSpace> planes;
   const auto add_plane = [&](const Vec3& normal, double offset) {
@@ -213,11 +266,12 @@ Touch touch_region(const PolytopePart& part, const Body& body, const Vec3& posit
     planes.clear();
     add_plane(side * region.plane.normal, side * region.plane.offset);
     for (const HalfSpace& s : piece.sides) add_plane(s.normal, s.offset);
-    const Overlap o = overlap_cell(solid, planes);
+    const Overlap o = overlap_cell(met, planes);
     if (!(o.volume > 0)) continue;
     sum.volume += o.volume;
     sum.centroid += o.volume * o.centroid;
     sum.depth += o.volume * o.depth;
+    sum.middle += o.first * o.middle;
     sum.first += o.first;
   }
   if (!(sum.volume > 0) || ((!known || ghost) && !(sum.first > 0))) return {};
@@ -228,6 +282,7 @@ Touch touch_region(const PolytopePart& part, const Body& body, const Vec3& posit
   }
   sum.centroid /= sum.volume;
   sum.depth /= sum.volume;
+  sum.middle = sum.first > 0 ? Vec3(sum.middle / sum.first) : sum.centroid;
   sum.area = std::max(sum.first, 1e-6 * std::pow(sum.volume, 2.0 / 3.0)) *
              (turn.transpose() * Vec3(side * region.plane.normal));
   Touch t = touch_of(sum, part.radius, turn, position);
@@ -256,13 +311,17 @@ Touch touch_wall(const SolidPair& pair, const Parts& parts, std::span<const Body
     return touch_region(part, body, position, *wall.surface, pair.b.solid, h.side);
   const Mat3 turn = body.orientation.toRotationMatrix();
   if (pair.b.kind == PartKind::wall_plane) {
-    const Overlap o = overlap_half_space(*part.solid, turn.transpose() * wall.normal,
-                                         wall.offset - wall.normal.dot(position));
+    const Vec3 up = turn.transpose() * wall.normal;
+    const double offset = wall.offset - wall.normal.dot(position);
+    thread_local Polytope cap;
+    const double depth = part.solid->exact ? offset - up.dot(support_exact(*part.solid, -up)) : 0.0;
+    if (part.solid->exact && !(depth > 0)) return {};
+    const Overlap o = overlap_half_space(met_part(*part.solid, -up, depth, cap), up, offset);
     Touch t = touch_of(o, part.radius, turn, position);
     t.depth = o.depth;
     return t;
   }
-  const Overlap o = overlap_solids(*part.solid, wall.solids[static_cast<std::size_t>(pair.b.solid)],
+  const Overlap o = overlap_smooth(*part.solid, wall.solids[static_cast<std::size_t>(pair.b.solid)],
                                    turn.transpose(), -(turn.transpose() * position),
                                    turn.transpose() * Vec3(h.normal.x, h.normal.y, h.normal.z));
   return touch_of(o, part.radius, turn, position);
@@ -300,7 +359,7 @@ Touch find_touch(const SolidPair& pair, const Parts& parts, std::span<const Body
              out = turn.transpose() * Vec3(normal.x, normal.y, normal.z);
   Touch touch{.apart = pair.touch.apart};
   if (out.isZero() && stand_apart(*part.solid, *other_part.solid, rotation, shift, touch.apart)) return touch;
-  touch = touch_of(overlap_solids(*part.solid, *other_part.solid, rotation, shift, out),
+  touch = touch_of(overlap_smooth(*part.solid, *other_part.solid, rotation, shift, out),
                    std::min(part.radius, other_part.radius), turn, body.position);
   touch.apart = pair.touch.apart;
   return touch;

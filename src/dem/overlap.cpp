@@ -81,7 +81,7 @@ bool clip(Scratch& s, const HalfSpace& plane) {
   return s.polygon.size() >= 3;
 }
 
-/// Volume, moment and area of the pyramids that faces span with an apex.
+/// Volume and moment of the pyramids that faces span with an apex.
 struct Sums {
   Vec3 apex{0, 0, 0};
   double volume = 0.0;
@@ -101,6 +101,19 @@ struct Sums {
     }
     return sum;
   }
+  /// Adds a polygon, and its shadow along `normal` to an area (m2) and its first moment about the apex (m3).
+  void add(const Polygon& p, const Vec3& normal, double& area, Vec3& first) {
+    const Vec3 a = p[0] - apex;
+    for (std::size_t n = 1; n + 1 < p.size(); ++n) {
+      const Vec3 b = p[n] - apex, c = p[n + 1] - apex, corners = a + b + c;
+      const Vec3 twice = (b - a).cross(c - a);
+      const double six_v = a.dot(twice), shadow = normal.dot(twice);
+      volume += six_v / 6.0;
+      moment += six_v / 24.0 * corners;
+      area += 0.5 * shadow;
+      first += 1.0 / 6.0 * shadow * corners;
+    }
+  }
   /// Adds a face; returns its vector area.
   Vec3 add(const CutSolid& solid, std::span<const CutEdge> edges) {
     Vec3 twice(0, 0, 0), heavy(0, 0, 0);
@@ -117,6 +130,26 @@ struct Sums {
     volume += six_v / 6.0;
     moment += heavy / 24.0;
     return 0.5 * twice;
+  }
+  /// Sum of place, from the apex, x vector area over a polygon, a face, m3.
+  Mat3 first_moment(const Polygon& p) const {
+    Mat3 first = Mat3::Zero();
+    const Vec3 a = p[0] - apex;
+    for (std::size_t n = 1; n + 1 < p.size(); ++n) {
+      const Vec3 b = p[n] - apex, c = p[n + 1] - apex;
+      first += (1.0 / 6.0 * (a + b + c)) * (b - a).cross(c - a).transpose();
+    }
+    return first;
+  }
+  Mat3 first_moment(const CutSolid& solid, std::span<const CutEdge> edges) const {
+    Mat3 first = Mat3::Zero();
+    const auto arm = [&](int n) -> Vec3 { return solid.points[static_cast<std::size_t>(n)] - apex; };
+    const Vec3 a = arm(edges[0].from);
+    for (const CutEdge& e : edges) {
+      const Vec3 b = arm(e.from), c = arm(e.to);
+      first += (1.0 / 6.0 * (a + b + c)) * (b - a).cross(c - a).transpose();
+    }
+    return first;
   }
 };
 
@@ -284,14 +317,22 @@ Vec3 add_polygon(const Scratch& s, Sums& sums, bool& started) {
   return sums.add(s.polygon);
 }
 
-/// Clips the faces of p (moved) by s.planes and adds what is left of those in the box.
+/// Centroid, from the apex, of the shadow of a surface along its vector area.
+Vec3 middle_of(const Mat3& first_moment, const Vec3& area) {
+  return first_moment * area / area.squaredNorm();
+}
+
+/// Clips the faces of p (moved) by s.planes and adds what is left of those in the box. `first`: their first
+/// moment, if asked for.
 Vec3 add_faces(Scratch& s, Sums& sums, bool& started, const Polytope& p, std::span<const Vec3> vertices,
-               const Box& shared, double margin = 0.0) {
+               const Box& shared, double margin, Mat3* first) {
   Vec3 total(0, 0, 0);
   note_sides(s, vertices, shared);
   for (const Polytope::Face& f : p.faces)
-    if (load_face(s, p, f, vertices, margin * f.normal) && clip_shared(s, shared))
+    if (load_face(s, p, f, vertices, margin * f.normal) && clip_shared(s, shared)) {
       total += add_polygon(s, sums, started);
+      if (first) *first += sums.first_moment(s.polygon);
+    }
   return total;
 }
 
@@ -318,6 +359,8 @@ Overlap overlap_half_space(const Polytope& a, const Vec3& normal, double offset)
   Sums sums;
   sums.apex = a.centre + (offset - normal.dot(a.centre)) * normal;  // on the plane: the lid spans no volume
   const HalfSpace plane{normal, offset};
+  double below = 0.0;  // shadow of the faces below the plane: minus the section
+  Vec3 first(0, 0, 0);
   s.code.clear();
   for (const Vec3& v : a.vertices) s.code.push_back(normal.dot(v) - offset < 0);
   for (const Polytope::Face& f : a.faces) {
@@ -327,7 +370,7 @@ Overlap overlap_half_space(const Polytope& a, const Vec3& normal, double offset)
     if (under == 0) continue;
     s.polygon.clear();
     for (const int n : corners) s.polygon.push_back(a.vertices[static_cast<std::size_t>(n)]);
-    if (under == f.count || clip(s, plane)) o.area -= sums.add(s.polygon);
+    if (under == f.count || clip(s, plane)) sums.add(s.polygon, normal, below, first);
   }
   if (!(sums.volume > 0)) return {};
   o.volume = sums.volume;
@@ -335,7 +378,9 @@ Overlap overlap_half_space(const Polytope& a, const Vec3& normal, double offset)
   o.depth = offset - normal.dot(o.centroid);
   if (!(o.depth > kRounding * a.radius)) return {};  // a corner that touches
   // What is wholly under the plane has no section with it: that of a prism as deep.
-  o.area = std::max(o.area.dot(normal), 0.5 * o.volume / o.depth) * normal;
+  const double section = -below, least = 0.5 * o.volume / o.depth;
+  o.area = std::max(section, least) * normal;
+  o.middle = section > least ? Vec3(sums.apex + first / below) : o.centroid;
   return o;
 }
 
@@ -349,8 +394,8 @@ bool stand_apart(const Polytope& a, const Polytope& b, const Mat3& rotation, con
   if (distance >= size) return true;
   if (along.isZero()) along = distance > 0 ? Vec3(centres / distance) : Vec3(Vec3::UnitZ());
   for (int n = 0; n < kTurns; ++n) {
-    const Vec3 p = support_polytope(a, along),
-               q = rotation * support_polytope(b, rotation.transpose() * -along) + translation;
+    const Vec3 p = support_exact(a, along),
+               q = rotation * support_exact(b, rotation.transpose() * -along) + translation;
     const Vec3 between = q - p;
     if (along.dot(between) > 2.0 * kHair * size) return true;
     const double length = between.norm();
@@ -377,10 +422,11 @@ Overlap overlap_polytopes(const Polytope& a, const Polytope& b, const Mat3& rota
             shared{.low = box_a.low.cwiseMax(box_b.low), .high = box_a.high.cwiseMin(box_b.high)};
   if (shared.empty()) return o;
   if (!planes_near(s, a, Mat3::Identity(), Vec3(0, 0, 0), hair, box_b, shared)) return o;
-  const Vec3 area_b = add_faces(s, sums, started, b, s.moved, shared);
+  Mat3 first = Mat3::Zero();
+  const Vec3 area_b = add_faces(s, sums, started, b, s.moved, shared, 0.0, &first);
   const Vec3 seams_b = seams_within(s, b, s.moved, shared);
   if (!planes_near(s, b, rotation, translation, 0.0, box_a, shared)) return o;
-  const Vec3 area_a = add_faces(s, sums, started, a, a.vertices, shared, hair);
+  const Vec3 area_a = add_faces(s, sums, started, a, a.vertices, shared, hair, nullptr);
   if (!(sums.volume > 0)) return {};
   o.volume = sums.volume;
   o.centroid = sums.apex + sums.moment / sums.volume;
@@ -389,6 +435,7 @@ Overlap overlap_polytopes(const Polytope& a, const Polytope& b, const Mat3& rota
   const bool cut_a = !seams_a.isZero(), cut_b = !seams_b.isZero();
   const Vec3 hidden = cut_a == cut_b ? Vec3(0.5 * (seams_b - seams_a)) : cut_b ? seams_b : Vec3(-seams_a);
   o.area = (cut_a == cut_b ? Vec3(0.5 * (area_b - area_a)) : cut_b ? area_b : Vec3(-area_a)) - hidden;
+  o.middle = sums.apex + middle_of(first, area_b);
   // What lies behind a seam that looks the way of the contact belongs to the part before it: of a corner of
   // walls, what is reached through the other wall.
   const double open = o.area.norm();
@@ -435,14 +482,18 @@ Overlap overlap_cell(const Polytope& a, std::span<const HalfSpace> planes) {
   }
   for (std::size_t n = 0, begin = 0; n < s.solid.faces.size(); begin = s.solid.faces[n++].end) {
     const CutFace& f = s.solid.faces[n];
-    const Vec3 area = sums.add(s.solid, std::span(s.solid.edges).subspan(begin, f.end - begin));
+    const auto edges = std::span(s.solid.edges).subspan(begin, f.end - begin);
+    const Vec3 area = sums.add(s.solid, edges);
     if (f.origin == Origin::solid) continue;
     o.area += area;
-    if (f.origin == Origin::first_plane) o.first = area.norm();
+    if (f.origin != Origin::first_plane) continue;
+    o.first = area.norm();
+    o.middle = sums.apex + middle_of(sums.first_moment(s.solid, edges), area);
   }
   if (!(sums.volume > 0)) return {};
   o.volume = sums.volume;
   o.centroid = sums.apex + sums.moment / sums.volume;
+  if (!(o.first > 0)) o.middle = o.centroid;
   o.depth = planes[0].offset - planes[0].normal.dot(o.centroid);
   if (is_film(o, hair)) o = {};
   return o;

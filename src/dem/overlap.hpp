@@ -10,6 +10,7 @@ struct Overlap {
   double volume = 0.0;     ///< m3
   Vec3 centroid{0, 0, 0};  ///< m
   Vec3 area{0, 0, 0};      ///< m2, vector area of b's surface inside a; its direction pushes a out of b
+  Vec3 middle{0, 0, 0};    ///< m, centroid of that surface; of a cell, of its first plane inside a
   double depth = 0.0;      ///< m, of the centroid below the plane or the first plane of a cell
   double first = 0.0;      ///< m2, of the first plane of a cell inside a
 };

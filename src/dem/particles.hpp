@@ -124,6 +124,7 @@ class Particles {
   void find_contacts(double dt);
   bool moves(std::size_t n) const;
   void note_size(const Shape& shape);
+  void cover_walls();
   void join_walls();
   void enter_and_leave();
   void enter_and_leave(int begin, int end, int& looks);

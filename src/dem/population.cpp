@@ -109,8 +109,42 @@ void Particles::add(Wall wall) {
   walls_.push_back(std::move(wall));
   for (std::size_t n = static_cast<std::size_t>(walls_.back().first_plane); n < planes_.size(); ++n)
     balls_.add(planes_[n], walls_.back());
+  cover_walls();
   join_walls();
   relist_ = true;
+}
+
+/// Walls that overlap push once: of two solids the later one is what lies outside the earlier; what lies
+/// wholly under a plane is covered by it, of planes that look the same way the lower. Of the last wall, with
+/// all.
+void Particles::cover_walls() {
+  constexpr double kHair = 1e-9;  // of the size: as high
+  Wall& last = walls_.back();
+  const auto is_under = [](const Wall& wall, const Wall& plane) {
+    const auto below = [&](const Polytope& p) {
+      return plane.normal.dot(support_polytope(p, plane.normal)) - plane.offset <= kHair * p.radius;
+    };
+    return wall.is_plane ? wall.normal.dot(plane.normal) > 1 - 1e-15 && wall.offset <= plane.offset
+                         : !wall.solids.empty() && std::all_of(wall.solids.begin(), wall.solids.end(), below);
+  };
+  for (Wall& wall : std::span(walls_).first(walls_.size() - 1)) {
+    if (wall.covered) continue;
+    if (wall.is_plane && is_under(last, wall)) last.covered = true;
+    else if (last.is_plane && is_under(wall, last)) wall.covered = true;
+    if (last.solids.empty()) continue;
+    const std::vector<Polytope> whole = last.solids;
+    for (const Polytope& q : wall.solids) {
+      std::vector<Polytope> left;
+      for (const Polytope& p : last.solids)
+        for (Polytope& part : without(p, q)) left.push_back(std::move(part));
+      last.solids = std::move(left);
+    }
+    last.covered = last.covered || last.solids.empty();
+    const auto same = [](const Polytope& p, const Polytope& q) { return p.vertices == q.vertices; };
+    if (std::equal(last.solids.begin(), last.solids.end(), whole.begin(), whole.end(), same)) continue;
+    for (Polytope& p : last.solids) p.seams.clear();
+    find_seams(last.solids);
+  }
 }
 
 /// Walls that lie on each other, across periodic sides too, are one solid. Of the last one, with all.

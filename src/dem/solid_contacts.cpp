@@ -40,6 +40,16 @@ bool same_surface(const SolidPair& p, const SolidPair& q) {
   return p.a == q.a && p.b.kind == q.b.kind && p.body_b == q.body_b;
 }
 
+/// Which part of a flat contact's tilting moves its pressure: all of it where a face rocks on its patch,
+/// nothing where a round body rolls and the patch goes with it. A face that tilts by an angle leans by a^2/4
+/// times that.
+double share_of_rocking(const Touch& t, const ContactHistory& h, const Vec3& spin, double dt) {
+  const Vec3 tilting = spin.cross(t.normal);
+  const double whole = 0.25 * t.patch_radius * t.patch_radius * tilting.squaredNorm() * dt;
+  if (!h.touched() || !(whole > 0)) return 1.0;
+  return std::clamp((t.lean - vec(h.lean)).dot(tilting) / whole, 0.0, 1.0);
+}
+
 void apply_law(SolidPair& pair, Meeting& m, const PairConstants<double>& p, bool tension, double dt) {
   const Touch& t = pair.touch;
   ContactHistory& h = pair.history;
@@ -51,7 +61,8 @@ void apply_law(SolidPair& pair, Meeting& m, const PairConstants<double>& p, bool
   const ContactForce<double> f = contact_force(m.spring, c, p, tension, dt, h.slip);
   const Vec3 spin = m.a.spin - m.b.spin;
   pair.force = vec(f.force);
-  pair.moment = vec(patch_moment(t.patch_radius, c.normal, p, f, triple(spin), dt, h.twist));
+  const double rocking = share_of_rocking(t, h, spin, dt);
+  pair.moment = vec(patch_moment(t.patch_radius, c.normal, p, f, triple(spin), rocking, dt, h.twist));
   if (p.rolling > 0) {
     c.radius = t.size;
     pair.moment += vec(rolling_moment(c, p, f, triple(spin), dt, h.roll));
@@ -60,6 +71,7 @@ void apply_law(SolidPair& pair, Meeting& m, const PairConstants<double>& p, bool
   pair.elastic = pair.stored + f.elastic_tangential + twisting;
   pair.wall_power = pair.body_b < 0 ? pair.force.dot(m.b.velocity) : 0.0;
   h.normal = c.normal;
+  h.lean = triple(t.lean);
   h.side = t.side;
   h.face = t.face;
 }
@@ -372,7 +384,7 @@ void SolidContacts::save(std::vector<double>& out) const {
       for (const int v : {static_cast<int>(k.kind), k.index, k.solid, k.image}) out.push_back(v);
     const ContactHistory& h = p.history;
     for (const int v : {p.body_a, p.body_b, h.side, h.face}) out.push_back(v);
-    for (const Triple<double>& v : {h.slip, h.roll, h.normal}) out.insert(out.end(), {v.x, v.y, v.z});
+    for (const Triple<double>& v : {h.slip, h.roll, h.normal, h.lean}) out.insert(out.end(), {v.x, v.y, v.z});
     out.insert(out.end(), {h.twist.angle, h.twist.stiffness, h.energy, h.power, h.dent});
     for (const Vec3& v : {p.shift, p.listed_at}) out.insert(out.end(), {v.x(), v.y(), v.z()});
     out.insert(out.end(), {p.gap, p.away ? 1.0 : 0.0});
@@ -381,7 +393,7 @@ void SolidContacts::save(std::vector<double>& out) const {
 
 void SolidContacts::load(StateReader& in, int bodies) {
   constexpr int any = std::numeric_limits<int>::max();
-  pairs_.assign(in.count(34), {});
+  pairs_.assign(in.count(37), {});
   for (SolidPair& p : pairs_) {
     for (PartKey* k : {&p.a, &p.b}) {
       k->kind = static_cast<PartKind>(in.whole(0, static_cast<int>(PartKind::wall_triangle)));
@@ -392,7 +404,7 @@ void SolidContacts::load(StateReader& in, int bodies) {
     ContactHistory& h = p.history;
     h.side = in.whole(-1, 1);
     h.face = in.whole(-1, any);
-    for (Triple<double>* v : {&h.slip, &h.roll, &h.normal})
+    for (Triple<double>* v : {&h.slip, &h.roll, &h.normal, &h.lean})
       for (double* c : {&v->x, &v->y, &v->z}) *c = in.number();
     for (double* v : {&h.twist.angle, &h.twist.stiffness, &h.energy, &h.power, &h.dent}) *v = in.number();
     for (Vec3* v : {&p.shift, &p.listed_at}) *v = in.vec3();

@@ -33,11 +33,13 @@ struct Touch {
   double size = 0.0;          ///< m, of the parts: scale of rolling resistance
   double depth = 0.0;         ///< m, of a flat contact: elastic energy over spring force; 0: not known
   double thickness = 0.0;     ///< m, mean, of a flat contact
-  int side = 0;               ///< of a surface on which a is: 1, -1
-  int face = -1;              ///< of a polytope before which a ball is
-  bool on_face = false;       ///< of a triangle: the ball stands on its inside, not on its rim
-  bool ghost = false;         ///< a meets a side that does not touch
-  Vec3 apart{0, 0, 0};        ///< two polytopes stood apart along this when last looked at, axes of a's body
+  Vec3 lean{0, 0, 0};  ///< m2, of a flat contact: by how much its pressure's centre lies beside the patch's,
+                       ///< times thickness
+  int side = 0;        ///< of a surface on which a is: 1, -1
+  int face = -1;       ///< of a polytope before which a ball is
+  bool on_face = false;  ///< of a triangle: the ball stands on its inside, not on its rim
+  bool ghost = false;    ///< a meets a side that does not touch
+  Vec3 apart{0, 0, 0};   ///< two polytopes stood apart along this when last looked at, axes of a's body
 };
 
 /// What changes in time along a contact.
@@ -45,6 +47,7 @@ struct ContactHistory {
   Triple<double> slip, roll;  ///< m, rad
   Twist twist;
   Triple<double> normal;    ///< at the last step; zero: they did not touch
+  Triple<double> lean;      ///< m2, at the last step, as in Touch
   int side = 0, face = -1;  ///< as in Touch
   double energy = 0.0;  ///< J, that all contacts of the two bodies have stored: work done on their springs
   double power = 0.0;   ///< W, the rate of that at the last step

@@ -21,6 +21,7 @@ struct Wall {
   std::shared_ptr<const Surface> surface;
   int first_plane = 0;           ///< of its WallPlanes: of a surface two a region, its front and its back
   std::vector<Polytope> solids;  ///< what the surface bounds, where that is convex: so polytopes meet it
+  bool covered = false;          ///< by other walls: polytopes do not meet it
 };
 
 /// A plane as balls meet it: a wall's, or one side of a flat region of its surface.

@@ -42,6 +42,8 @@ Shape make_polytope_shape(std::vector<Polytope> parts, TriangleMesh surface, con
     v = to_body(data->frame, v);
     data->bounding_radius = std::max(data->bounding_radius, v.norm());
   }
+  for (const Polytope& p : parts)
+    if (p.exact) data->bounding_radius = std::max(data->bounding_radius, p.exact->radius());
   data->smallest_feature = std::min(2 * data->bounding_radius, width_polytopes(parts));
   data->geometry = PolytopesGeometry{std::move(parts), std::move(surface)};
   return Shape(data);

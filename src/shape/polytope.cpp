@@ -29,6 +29,17 @@ const Vec3& corner(const Polytope& p, const Polytope::Face& f, int n) {
   return p.vertices[static_cast<std::size_t>(p.corners[static_cast<std::size_t>(f.first + n)])];
 }
 
+/// The part of a convex polytope within normal . x < offset, which must have a volume.
+Polytope cut_polytope(const Polytope& p, const Vec3& normal, double offset) {
+  std::vector<Vec3> points;
+  for (const Polytope::Face& f : p.faces) {
+    std::vector<Vec3> polygon;
+    for (int c = 0; c < f.count; ++c) polygon.push_back(corner(p, f, c));
+    for (const Vec3& v : cut_polygon(polygon, normal, offset)) points.push_back(v);
+  }
+  return convex_hull(points);
+}
+
 }  // namespace
 
 Polytope polytope_box(const Vec3& half) {
@@ -52,7 +63,26 @@ Polytope moved(const Polytope& p, const Mat3& rotation, const Vec3& translation)
       f.offset += f.normal.dot(translation);
     }
   q.centre = rotation * p.centre + translation;
+  if (!rotation.isIdentity(0.0) || !translation.isZero(0.0)) q.exact.reset();
   return q;
+}
+
+std::vector<Polytope> without(const Polytope& p, const Polytope& q) {
+  const double slack = kSeam * (p.radius + q.radius);
+  if ((p.centre - q.centre).norm() > p.radius + q.radius) return {p};
+  const Farthest of_q(q.vertices);
+  for (const Polytope::Face& f : p.faces)
+    if (f.offset + of_q.along(-f.normal) <= slack) return {p};
+  std::vector<Polytope> outside;
+  Polytope rest = p;
+  for (const Polytope::Face& f : q.faces) {  // cut off what is beyond each face
+    const Farthest of_rest(rest.vertices);
+    if (f.offset + of_rest.along(-f.normal) <= slack) return {p};
+    if (of_rest.along(f.normal) - f.offset <= slack) continue;
+    outside.push_back(cut_polytope(rest, -f.normal, -f.offset));
+    rest = cut_polytope(rest, f.normal, f.offset);
+  }
+  return outside;
 }
 
 void find_seams(Polytope& p, const Polytope& q) {
@@ -149,6 +179,10 @@ Vec3 support_polytope(const Polytope& p, const Vec3& direction) {
     }
   }
   return p.vertices[farthest];
+}
+
+Vec3 support_exact(const Polytope& p, const Vec3& direction) {
+  return p.exact ? p.exact->support(direction) : support_polytope(p, direction);
 }
 
 double volume_polytope(const Polytope& p) { return mass_mesh(triangles_of(p)).volume; }

@@ -1,8 +1,10 @@
 #pragma once
+#include <memory>
 #include <span>
 #include <vector>
 
 #include "base/vec.hpp"
+#include "shape/superquadric.hpp"
 #include "shape/triangle_mesh.hpp"
 
 namespace ejecta {
@@ -27,6 +29,10 @@ struct Polytope {
   Vec3 centre{0, 0, 0};       ///< of mass, so inside it: of a sphere that holds it
   double radius = 0.0;        ///< of that sphere
   double largest_face = 0.0;  ///< m2
+  /// The smooth solid, in the same axes, that it is inscribed in and stands for; `excess` times as large
+  /// about the origin it would hold that solid.
+  std::shared_ptr<const Superquadric> exact;
+  double excess = 1.0;
 };
 
 /// Indices of the vertices of a face, counter-clockwise.
@@ -40,6 +46,8 @@ Polytope convex_hull(const std::vector<Vec3>& points);
 Polytope polytope_box(const Vec3& half);
 /// The polytope moved to other axes: p -> rotation * p + translation.
 Polytope moved(const Polytope& p, const Mat3& rotation, const Vec3& translation);
+/// What of p lies outside q, as convex parts without seams; all of p, as it is, where they only touch.
+std::vector<Polytope> without(const Polytope& p, const Polytope& q);
 /// Notes where p lies on q, with which it shares no space.
 void find_seams(Polytope& p, const Polytope& q);
 /// The same of all convex parts of one solid.
@@ -63,6 +71,8 @@ struct NearestPoint {
 /// Exact signed distance of a point and its gradient.
 NearestPoint nearest_on_polytope(const Polytope& p, const Vec3& point);
 Vec3 support_polytope(const Polytope& p, const Vec3& direction);
+/// Of the smooth solid that it stands for, if it does.
+Vec3 support_exact(const Polytope& p, const Vec3& direction);
 double volume_polytope(const Polytope& p);                 ///< m3
 double volume_polytopes(std::span<const Polytope> parts);  ///< m3; space that two share counts twice
 /// Smallest distance between two parallel planes that hold the polytope, one of them on a face.

@@ -90,7 +90,8 @@ Shape make_polyhedron(const std::vector<Vec3>& points);
 Shape make_mesh(const TriangleMesh& mesh, const std::string& name, double fit_error = 0.0);
 
 /// ((|x|/a)^across + (|y|/b)^across)^(along/across) + (|z|/c)^along <= 1, `size` = (2a, 2b, 2c); 2, 2 is an
-/// ellipsoid. Mass properties are exact; its surface, and so contacts, are those of an inscribed polyhedron.
+/// ellipsoid. Mass properties are exact, and so is where it meets planes and polytopes; its surface, its
+/// distances, and where it meets balls are those of an inscribed polyhedron.
 Shape make_superquadric(const Vec3& size, double across, double along);
 
 }  // namespace ejecta

@@ -37,7 +37,7 @@ TEST(Allocation, AStepAllocatesNothing) {
     c.bodies.push_back(b);
   }
   Particles p = make_particles(c);
-  for (int n = 0; n < 250; ++n) p.advance(1e-3);
+  for (int n = 0; n < 400; ++n) p.advance(1e-3);
   const std::int64_t lists = p.lists();
   allocations = 0;
   counting = true;

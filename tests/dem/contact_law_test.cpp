@@ -108,7 +108,7 @@ TEST(ContactLaw, RollingAndTwistingStopAtTheirLimits) {
   D rolling, patch;
   for (int n = 0; n < 1000; ++n) {
     rolling = rolling_moment(c, kPair, f, D{10, 0, 3}, 1e-4, roll);
-    patch = patch_moment(1e-3, c.normal, kPair, f, D{10, 0, 3}, 1e-4, twist);
+    patch = patch_moment(1e-3, c.normal, kPair, f, D{10, 0, 3}, 1.0, 1e-4, twist);
   }
   EXPECT_NEAR(rolling.x, -0.1 * 2e-3 * f.normal, 1e-15);
   EXPECT_EQ(rolling.z, 0.0);

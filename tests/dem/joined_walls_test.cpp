@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <string>
@@ -64,6 +65,36 @@ TEST(JoinedWalls, AreOneSurface) {
   const BodySpec rolling = round_or_flat(true, -20e-3, 0.5);
   expect_same_motion(on_walls({rolling}, {block_from(-0.1, 0), block_from(1e-5, 0.1)}),
                      on_walls({rolling}, {floor_at(0)}), 0.1);
+}
+
+/// Where walls lie on each other in one plane, or one in the other, a body is pushed once.
+TEST(JoinedWalls, AreOneSurfaceWhereTheyOverlap) {
+  WallSpec belt = floor_at(0), thick = block_from(-0.03, 0.02);
+  belt.name = "belt";
+  thick.size.z() *= 3;
+  thick.point.z() *= 3;
+  WallSpec sunk = block_from(-0.02, 0.03);
+  sunk.point.z() -= 1e-3;
+  const std::vector<std::vector<WallSpec>> floors{
+      {floor_at(0), belt},
+      {floor_at(0), block_from(-0.01, 0.03)},
+      {block_from(-0.01, 0.03), floor_at(0)},
+      {floor_at(0), floor_at(-1e-3)},
+      {block_from(-0.1, 0.1), block_from(-0.01, 0.03)},
+      {block_from(-0.1, 0.1), thick},
+      {block_from(-0.1, 0.1), sunk},
+      {block_from(-0.1, 0.01), block_from(-0.01, 0.1)},
+      {block_from(-0.1, 0.1), block_from(-0.1, 0.1), block_from(-0.1, 0.1)}};
+  for (const bool round : {true, false})
+    for (const double drop : {0.0, 2e-3})
+      for (std::size_t n = 0; n < floors.size(); ++n) {
+        SCOPED_TRACE(fmt::format("{}, from {} m, floor {}", round ? "ball" : "box", drop, n));
+        BodySpec body = round_or_flat(round, -20e-3, 0.5);
+        body.position.z() += drop;
+        Case over = on_walls({body}, floors[n]), plane = on_walls({body}, {floor_at(0)});
+        over.materials[0].friction = plane.materials[0].friction = round ? 0.4 : 0.0;
+        expect_same_motion(over, plane, 0.1);
+      }
 }
 
 TEST(JoinedWalls, AcrossAPeriodicSideToo) {

@@ -69,6 +69,40 @@ TEST(Shape, BodyAxesArePrincipalAndCentred) {
   EXPECT_NEAR(s.signed_distance(f.rotation.conjugate() * (Vec3(4, 5, 5) - f.centre)), 0.0, 1e-9);
 }
 
+/// The farthest point along a direction is the surface's own, and a cap lacks the same share of its volume
+/// wherever it is cut from an ellipsoid: pi d^2 (h - d/3) a b c/h^3 for a depth d below a top at the height h
+/// (a sphere's, mapped).
+TEST(Superquadric, CapsFollowTheSmoothSurface) {
+  const Vec3 half(5, 4, 3);
+  double least = 1.0, most = 0.0;
+  for (int n = 0; n < 40; ++n) {
+    const Vec3 normal = Vec3(std::sin(3.0 * n), std::cos(5.0 * n), std::sin(2.0 * n + 1)).normalized();
+    for (const double exponent : {1.0, 1.5, 2.0, 3.0, 8.0, 20.0}) {
+      const Superquadric s{half, exponent, exponent};
+      const Vec3 top = s.support(normal);
+      EXPECT_NEAR(s.gauge(top), 1.0, 1e-12);
+      for (const Vec3& d : icosphere(2).vertices)
+        EXPECT_LE(normal.dot(d) / s.gauge(d), normal.dot(top) + 1e-12);
+      for (const double depth : {1e-9, 1e-4, 0.1, 1.0}) {
+        Polytope cap;
+        if (!cut_cap(s, normal, depth, cap)) continue;
+        const double height = normal.dot(top), volume = volume_polytope(cap), share = depth / height;
+        EXPECT_GT(volume, 0.0);
+        for (const Vec3& v : cap.vertices) {
+          EXPECT_NEAR(s.gauge(v), 1.0, 1e-12);
+          EXPECT_GE(normal.dot(v), height - depth - 1e-12);
+        }
+        if (exponent != 2.0 || depth < 1e-4) continue;
+        const double exact = M_PI * share * share * (1 - share / 3) * half.prod();
+        least = std::min(least, volume / exact);
+        most = std::max(most, volume / exact);
+      }
+    }
+  }
+  EXPECT_GT(least, 0.93);
+  EXPECT_LT(most - least, 0.01);
+}
+
 TEST(Shape, RefusesLengthsThatAreNot) {
   EXPECT_THROW(make_sphere(0.0), InputError);
   EXPECT_THROW(make_sphere(std::nan("")), InputError);

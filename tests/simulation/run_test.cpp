@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
@@ -14,6 +15,7 @@
 #include "base/error.hpp"
 #include "base/file_lock.hpp"
 #include "case/load.hpp"
+#include "case/sense.hpp"
 #include "output/output_file.hpp"
 #include "scratch_directory.hpp"
 #include "simulation/forecast.hpp"
@@ -108,6 +110,21 @@ TEST(Run, StoppedAndResumedIsTheUndisturbedOne) {
   ASSERT_TRUE(finished_run(c, place));
   EXPECT_EQ(finished_run(c, place)->quantities["bodies"], r.quantities["bodies"]);
   EXPECT_FALSE(finished_run(short_ejection(600), place)) << "of another case";
+}
+
+/// What an [[expect]] may name is what a run says, and nothing else.
+TEST(Run, WhatItSaysOfABodyCanBeExpected) {
+  Case c = short_ejection();
+  const Result r = run(c, {});
+  const auto is_refused = [&](const std::string& quantity) {
+    c.expects = {{.quantity = quantity, .tolerance = 1.0, .text = "", .source = ""}};
+    const std::vector<Problem> problems = check_sense(c);
+    return std::any_of(problems.begin(), problems.end(),
+                       [](const Problem& p) { return p.key == "expect.0.quantity"; });
+  };
+  for (const auto& [key, value] : r.quantities["bodies"][0].items())
+    EXPECT_FALSE(is_refused("/bodies/0/" + key + (value.is_array() ? "/2" : ""))) << key;
+  EXPECT_TRUE(is_refused("/bodies/0/finale_position_m/2"));
 }
 
 TEST(Run, ACaseThatCannotStartLeavesTheEarlierRunAsItWas) {
