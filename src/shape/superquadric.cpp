@@ -13,6 +13,9 @@
 namespace ejecta {
 namespace {
 
+/// Exponent up to which a surface is round everywhere: beyond it caps on its flat sides lose up to 10 % of an
+/// impact's energy (2 % up to it), and its polytope does not.
+constexpr double kRoundest = 4;
 constexpr int kLevels = 3;  // of the icosphere: 1280 triangles, within 0.3 % of the radius of an ellipsoid
 
 /// Integral of z^p (1 - z^n)^(k/n) over [0, 1] = Beta((p + 1)/n, k/n + 1)/n.
@@ -192,11 +195,13 @@ Shape make_superquadric(const Vec3& size, double across, double along) {
   }
   Polytope hull = convex_hull(points);
   TriangleMesh surface = triangles_of(hull);
-  auto exact = std::make_shared<Superquadric>(Superquadric{0.5 * size, across, along});
-  hull.radius = exact->radius() + hull.centre.norm();
-  for (const Polytope::Face& f : hull.faces)
-    hull.excess = std::max(hull.excess, f.normal.dot(exact->support(f.normal)) / f.offset);
-  hull.exact = std::move(exact);
+  if (across <= kRoundest && along <= kRoundest) {
+    auto exact = std::make_shared<Superquadric>(Superquadric{0.5 * size, across, along});
+    hull.radius = exact->radius() + hull.centre.norm();
+    for (const Polytope::Face& f : hull.faces)
+      hull.excess = std::max(hull.excess, f.normal.dot(exact->support(f.normal)) / f.offset);
+    hull.exact = std::move(exact);
+  }
   return make_polytope_shape({std::move(hull)}, std::move(surface),
                              mass_superquadric(0.5 * size, along, across));
 }

@@ -22,7 +22,7 @@ CutFlow::CutFlow(const Grid& grid, double viscosity, const std::array<bool, 6>& 
 }
 
 Vec3 CutFlow::begin(const CutCells& cut, const std::array<ConstFieldView, 3>& u, ConstFieldView p,
-                    double dt) {
+                    bool moves_gaps, double dt) {
   Vec3 sum{0, 0, 0};
   const auto add = [&](int i, int j, int k, double sign) {
     const double part = sign * double(carried_(i, j, k)) * grid_.volume(i, j, k);
@@ -56,12 +56,12 @@ Vec3 CutFlow::begin(const CutCells& cut, const std::array<ConstFieldView, 3>& u,
   kept_.resize(cut.cells.size());
   sums_.resize(cut.cells.size());
   values_.resize(cut.ghosts.size());
-  list_differences(cut);
+  list_differences(cut, p);
   step_ = static_cast<Real>(dt);
   held_.resize(cut.ghosts.size());
   for (std::size_t n = 0; n < cut.ghosts.size(); ++n)
     for (std::size_t e = 0; e < 3; ++e) held_[n][e] = u[e](cut.ghosts[n].i, cut.ghosts[n].j, cut.ghosts[n].k);
-  if (p.origin) push_thin(cut, p, step_);
+  if (moves_gaps) push_thin(cut, p, step_);
   list_closed_ends(cut);
   return sum;
 }

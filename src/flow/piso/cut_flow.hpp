@@ -31,8 +31,10 @@ class CutFlow {
   CutFlow(const Grid& grid, double viscosity, const std::array<bool, 6>& passable = {});
 
   /// New cells, for a step of dt s: volumes of fluid, and the momentum over density (m4/s) that their change
-  /// puts into the sums. p over density moves what gaps thinner than a cell hold; null: nothing does.
-  Vec3 begin(const CutCells& cut, const std::array<ConstFieldView, 3>& u, ConstFieldView p, double dt);
+  /// puts into the sums. p: pressure at its beginning, over density or not; `moves_gaps`: over density, it
+  /// moves what gaps thinner than a cell hold.
+  Vec3 begin(const CutCells& cut, const std::array<ConstFieldView, 3>& u, ConstFieldView p, bool moves_gaps,
+             double dt);
   /// Part of a cell's volume whose momentum it carries: 1 in plain fluid, 0 in solids.
   ConstFieldView carried() const { return carried_.view(); }
   Field& carried_field() { return carried_; }
@@ -115,8 +117,9 @@ class CutFlow {
   struct DifferencesOf {
     int first = 0, faces = 0, all = 0;
   };
-  void list_differences(const CutCells& cut);
-  void list_walls_at_edge(const CutCells& cut, const CutCell& c, Difference* first, int& count) const;
+  void list_differences(const CutCells& cut, ConstFieldView p);
+  void list_walls_at_edge(const CutCells& cut, const CutCell& c, ConstFieldView p, Difference* first,
+                          int& count) const;
   std::array<Real, 3> sum_of_differences(int first, int last, ConstFieldView f) const;
   void list_closed_ends(const CutCells& cut);
   /// Whether a small cell lies between walls so close that no cell of the fluid tells what moves in it.

@@ -65,7 +65,7 @@ void CutGas::merge(const CutCells& cut, Block& u, Block& w) {
 
 void CutGas::begin(const CutCells& cut, Block& u, Block& w, double dt) {
   merge(cut, u, w);
-  flow_.begin(cut, {w[kU].view(), w[kV].view(), w[kW].view()}, {}, dt);
+  flow_.begin(cut, {w[kU].view(), w[kV].view(), w[kW].view()}, w[kP].view(), false, dt);
   kept_.resize(cut.cells.size());
   shifted_.assign(cut.cells.size(), {});
   swept_.assign(cut.cells.size(), 0.0);

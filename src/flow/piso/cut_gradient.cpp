@@ -15,6 +15,9 @@ using Triple = std::array<Real, 3>;
 constexpr int kMostDifferences = 6 + 3 * 4 * 2;
 /// Length of the columns behind a face that counts at least, widths of a cell.
 constexpr Real kLeastColumn = Real(0.05);
+/// Rise of the pressure towards an edge over its fall into the cell of the edge from which on its peak counts
+/// as lying before the edge.
+constexpr Real kPeak = Real(1) / 16;
 /// Closed part of a face of the next cell beyond that of this one at which half of a wall counts to go on
 /// there.
 constexpr Real kHalfGoesOn = Real(0.02);
@@ -79,7 +82,7 @@ void for_each_way_on(const Grid& grid, const CutCells& cut, const Cell& cell, in
 
 }  // namespace
 
-void CutFlow::list_differences(const CutCells& cut) {
+void CutFlow::list_differences(const CutCells& cut, ConstFieldView p) {
   differences_of_.resize(cut.cells.size());
   differences_.resize(static_cast<std::size_t>(kMostDifferences) * cut.members.size());
   const ConstFieldView at = carried();
@@ -108,7 +111,7 @@ void CutFlow::list_differences(const CutCells& cut) {
     of.all = of.faces;
     for (int m = carrier.first_member; m < carrier.first_member + carrier.members; ++m) {
       const CutCell& c = cut.cells[static_cast<std::size_t>(cut.members[static_cast<std::size_t>(m)])];
-      if (c.edge > Real(0)) list_walls_at_edge(cut, c, first, of.all);
+      if (c.edge > Real(0)) list_walls_at_edge(cut, c, p, first, of.all);
     }
     for (int f = 0; f < of.all; ++f) {
       Real& slope = first[f].slope;
@@ -120,8 +123,12 @@ void CutFlow::list_differences(const CutCells& cut) {
 
 /// A cell through which an edge runs has one pressure for both sides of it, one of which may face the stream
 /// and the other lie in its shadow. A wall there takes the pressure that stands before the rest of it: in
-/// place of p that of the next cells along it, 2 p_next - p_after.
-void CutFlow::list_walls_at_edge(const CutCells& cut, const CutCell& c, Difference* first, int& count) const {
+/// place of p that of the next cell along it, continued by the slope from the one after, or by that towards p
+/// where it is flatter, or not at all where they have other signs (minmod); but p where the pressure rises to
+/// a peak before the edge, as nothing tells how far it falls from there. All by p at the beginning of the
+/// step, so that the gradient is linear within it.
+void CutFlow::list_walls_at_edge(const CutCells& cut, const CutCell& c, ConstFieldView p, Difference* first,
+                                 int& count) const {
   const ConstFieldView at = carried();
   const auto offset = [&](const Cell& cell) { return cell[0] + cell[1] * at.sy + cell[2] * at.sz; };
   const Cell cell{c.i, c.j, c.k};
@@ -136,9 +143,16 @@ void CutFlow::list_walls_at_edge(const CutCells& cut, const CutCell& c, Differen
         c.edge * ends * face_area_of(grid_.metrics(), d, cell) * grid_.metrics(d).inv_width[cell[s]];
     for_each_way_on(grid_, cut, cell, d, ends > Real(0) ? upper : cell,
                     [&](Real part, const Cell& next, const Cell& after) {
-                      first[count++] = {offset(cell), offset(next), d, part * slope, Real(0)};
-                      first[count++] = {offset(after), offset(next), d,
-                                        part * slope * ratio_of_distances(grid_, cell, next, after), Real(0)};
+                      const std::ptrdiff_t here = offset(cell), beside = offset(next), behind = offset(after);
+                      const Real ratio = ratio_of_distances(grid_, cell, next, after);
+                      const Real continued = ratio * (p.origin[beside] - p.origin[behind]),
+                                 step = p.origin[here] - p.origin[beside];
+                      const Real limit = step * continued > Real(0) ? std::min(step / continued, Real(1))
+                                                                    : Real(step == continued);
+                      if (continued > Real(0) && step < Real(0))
+                        part *= std::max(Real(0), Real(1) + continued / (kPeak * step));
+                      first[count++] = {here, beside, d, part * slope, Real(0)};
+                      first[count++] = {behind, beside, d, part * slope * ratio * limit, Real(0)};
                     });
   }
 }

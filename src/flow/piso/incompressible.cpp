@@ -221,7 +221,7 @@ void Incompressible::advance(double time, double dt, CutCells& cut) {
   filter_time_ = static_cast<Real>(kFilter / std::max(courant(1.0), 1e-30));
   convection_ = -1.0;
   cut_flow_.extend_to_small(cut, p_.view());
-  move_displaced(cut_flow_.begin(cut, std::as_const(*this).views(u_), p_.view(), dt));
+  move_displaced(cut_flow_.begin(cut, std::as_const(*this).views(u_), p_.view(), true, dt));
   cut_pressure_.begin(cut, boundaries_);
   smoothing_ = turbulence_ && dt > explicit_dt_;
   if (smoothing_) smoother_.prepare(0.5 * dt * largest_viscosity_, cut, cut_flow_.carried());

@@ -56,7 +56,7 @@ void Incompressible::make_superficial(FluidFraction& f) {
 void Incompressible::advance_through_grains(double time, double dt, CutCells& cut, FluidFraction& f) {
   const Real h = static_cast<Real>(dt);
   convection_ = -1.0;
-  move_displaced(cut_flow_.begin(cut, std::as_const(*this).views(u_), p_.view(), dt));
+  move_displaced(cut_flow_.begin(cut, std::as_const(*this).views(u_), p_.view(), true, dt));
   cut_pressure_.begin(cut, boundaries_);
   smoothing_ = turbulence_ && dt > explicit_dt_;
   if (smoothing_) smoother_.prepare(0.5 * dt * largest_viscosity_, cut, cut_flow_.carried());
