@@ -25,6 +25,10 @@ void cells_stay_whole(const Case& c, Findings& found) {
       }
 }
 
+bool holds(const std::vector<std::string>& names, const std::string& name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
 /// Parts of a JSON pointer.
 std::vector<std::string> steps_of(const std::string& pointer) {
   std::vector<std::string> steps;
@@ -99,8 +103,7 @@ void quantity_exists(const Case& c, const std::string& quantity, const std::stri
     found.error(key, what, names.empty() ? "" : "one of: " + joined(names),
                 example.empty() ? "" : fmt::format("quantity = \"{}\"", path));
   };
-  const bool known = steps.empty() || std::find(kOfRun.begin(), kOfRun.end(), steps[0]) != kOfRun.end();
-  if (!known && !nearest(steps[0], kOfRun).empty())
+  if (!steps.empty() && !holds(kOfRun, steps[0]) && !nearest(steps[0], kOfRun).empty())
     return refuse(0, fmt::format("no run computes \"{}\"", steps[0]), kOfRun);
   if (steps.size() == 1 && steps[0] == "outcome" && !c.splitter.enabled)
     return found.error(key, "without a plate there is no outcome", "a [splitter]",
@@ -108,7 +111,7 @@ void quantity_exists(const Case& c, const std::string& quantity, const std::stri
   if (steps.size() > 1 && steps[0] == "probes") {
     std::vector<std::string> names;
     for (const ProbeSpec& p : c.probes) names.push_back(p.name);
-    if (std::find(names.begin(), names.end(), steps[1]) == names.end())
+    if (!holds(names, steps[1]))
       names.empty()
           ? found.error(key, fmt::format("the case has no probe \"{}\"", steps[1]),
                         "a [[probe]] of that name", fmt::format("[[probe]] name = \"{}\"", steps[1]))
@@ -135,15 +138,14 @@ void quantity_exists(const Case& c, const std::string& quantity, const std::stri
     names.insert(names.end(),
                  {"outcome", "clearance_at_splitter_m", "velocity_margin_z_m_s", "time_at_splitter_s",
                   "thrown_back_by_plate", "flight_clearance_m", "wanted", "judgement"});
-  if (std::find(names.begin(), names.end(), steps[2]) == names.end())
+  if (!holds(names, steps[2]))
     return refuse(2, fmt::format("no run of this case computes \"{}\" of a body", steps[2]), names);
-  const bool vector =
-      std::find(kVectorsOfBody.begin(), kVectorsOfBody.end(), steps[2]) != kVectorsOfBody.end();
+  const bool vector = holds(kVectorsOfBody, steps[2]);
   const std::vector<std::string> components{"0", "1", "2"};
   if (vector && steps.size() == 3)
     found.error(key, fmt::format("{} has three components", steps[2]), "one of them: 0, 1, 2 (x, y, z)",
                 fmt::format("quantity = \"{}/2\"", quantity));
-  else if (vector && std::find(components.begin(), components.end(), steps[3]) == components.end())
+  else if (vector && !holds(components, steps[3]))
     refuse(3, fmt::format("{} has three components, no \"{}\"", steps[2], steps[3]), components);
 }
 

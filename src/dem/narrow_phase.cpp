@@ -192,15 +192,17 @@ const Polytope& met_part(const Polytope& solid, const Vec3& along, double depth,
   return solid.exact && cut_cap(*solid.exact, along, kMore * depth, cap) ? cap : solid;
 }
 
-/// A polytope that holds the smooth solid which the given one is inscribed in.
-Polytope grown(const Polytope& solid) {
-  Polytope p = solid;
-  p.exact.reset();
-  for (Vec3& v : p.vertices) v *= p.excess;
-  for (Polytope::Face& f : p.faces) f.offset *= p.excess;
-  p.centre *= p.excess;
-  p.radius *= p.excess;
-  return p;
+/// A polytope that holds what a solid stands for: of a smooth one, which it is inscribed in, grown in
+/// `grown`.
+const Polytope& holder(const Polytope& solid, Polytope& grown) {
+  if (!solid.exact) return solid;
+  grown = solid;
+  grown.exact.reset();
+  for (Vec3& v : grown.vertices) v *= solid.excess;
+  for (Polytope::Face& f : grown.faces) f.offset *= solid.excess;
+  grown.centre *= solid.excess;
+  grown.radius *= solid.excess;
+  return grown;
 }
 
 /// As overlap_solids. Facets of smooth solids lie about the contact: where it pushed at the last step, or, of
@@ -213,7 +215,8 @@ Overlap overlap_smooth(const Polytope& a, const Polytope& b, const Mat3& rotatio
   if (!a.exact && !b.exact) return overlap_solids(a, b, rotation, shift, out);
   Vec3 along = -out;  // from a to b, axes of a
   if (out.isZero()) {
-    const Overlap coarse = overlap_polytopes(grown(a), grown(b), rotation, shift);
+    thread_local Polytope grown_a, grown_b;
+    const Overlap coarse = overlap_polytopes(holder(a, grown_a), holder(b, grown_b), rotation, shift);
     if (coarse.area.isZero()) return {};
     along = -coarse.area.normalized();
   }

@@ -81,6 +81,11 @@ bool clip(Scratch& s, const HalfSpace& plane) {
   return s.polygon.size() >= 3;
 }
 
+/// Adds the sum of place x vector area over a triangle, m3.
+void add_first_moment(const Vec3& a, const Vec3& b, const Vec3& c, Mat3& first) {
+  first += (1.0 / 6.0 * (a + b + c)) * (b - a).cross(c - a).transpose();
+}
+
 /// Volume and moment of the pyramids that faces span with an apex.
 struct Sums {
   Vec3 apex{0, 0, 0};
@@ -135,20 +140,14 @@ struct Sums {
   Mat3 first_moment(const Polygon& p) const {
     Mat3 first = Mat3::Zero();
     const Vec3 a = p[0] - apex;
-    for (std::size_t n = 1; n + 1 < p.size(); ++n) {
-      const Vec3 b = p[n] - apex, c = p[n + 1] - apex;
-      first += (1.0 / 6.0 * (a + b + c)) * (b - a).cross(c - a).transpose();
-    }
+    for (std::size_t n = 1; n + 1 < p.size(); ++n) add_first_moment(a, p[n] - apex, p[n + 1] - apex, first);
     return first;
   }
   Mat3 first_moment(const CutSolid& solid, std::span<const CutEdge> edges) const {
     Mat3 first = Mat3::Zero();
     const auto arm = [&](int n) -> Vec3 { return solid.points[static_cast<std::size_t>(n)] - apex; };
     const Vec3 a = arm(edges[0].from);
-    for (const CutEdge& e : edges) {
-      const Vec3 b = arm(e.from), c = arm(e.to);
-      first += (1.0 / 6.0 * (a + b + c)) * (b - a).cross(c - a).transpose();
-    }
+    for (const CutEdge& e : edges) add_first_moment(a, arm(e.from), arm(e.to), first);
     return first;
   }
 };

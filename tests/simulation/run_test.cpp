@@ -363,22 +363,15 @@ report = false
   EXPECT_LT(rise, ideal);
 }
 
-/// The centre of a channel at Re_tau 2000 (Hoyas & Jimenez 2006: 24.1 to 24.4 times the friction velocity,
-/// which the driving force says), by 20 cells, the first in the logarithmic layer.
-TEST(Run, AChannelHasTheFrictionOfItsWalls) {
-  for (const char* model : {"k-epsilon", "k-omega-sst"}) {
-    const Case c = parse_case(fmt::format(R"(
+/// What flows at this speed (m/s) through a channel between walls 2 m apart, of 20 cells, as [fluid] and
+/// [flow] say.
+Case channel(const std::string& fluid_and_flow, double seconds, double speed) {
+  return parse_case(fmt::format(R"(
 [run]
-end_time = "40 s"
+end_time = "{} s"
 [environment]
 gravity = ["0 m/s2", "0 m/s2", "0 m/s2"]
-[fluid]
-ideal_gas = false
-density = "1 kg/m3"
-viscosity = "0.0005 Pa s"
-[flow]
-turbulence = "{}"
-body_force = ["1 m/s2", "0 m/s2", "0 m/s2"]
+{}
 [grid.x]
 points = ["0 m", "0.4 m"]
 cells = [4]
@@ -397,7 +390,7 @@ type = "periodic"
 [boundary.z_max]
 type = "periodic"
 [[initial]]
-velocity = ["20 m/s", "0 m/s", "0 m/s"]
+velocity = ["{} m/s", "0 m/s", "0 m/s"]
 k = "3 m2/s2"
 epsilon = "5 m2/s3"
 [[probe]]
@@ -406,8 +399,25 @@ position = ["0.2 m", "0 m", "0.2 m"]
 [output]
 report = false
 )",
-                                          model),
-                              "channel");
+                                seconds, fluid_and_flow, speed),
+                    "channel");
+}
+
+/// The centre of a channel at Re_tau 2000 (Hoyas & Jimenez 2006: 24.1 to 24.4 times the friction velocity,
+/// which the driving force says), by 20 cells, the first in the logarithmic layer.
+TEST(Run, AChannelHasTheFrictionOfItsWalls) {
+  for (const char* model : {"k-epsilon", "k-omega-sst"}) {
+    const Case c = channel(fmt::format(R"(
+[fluid]
+ideal_gas = false
+density = "1 kg/m3"
+viscosity = "0.0005 Pa s"
+[flow]
+turbulence = "{}"
+body_force = ["1 m/s2", "0 m/s2", "0 m/s2"]
+)",
+                                       model),
+                           40, 20);
     const double centre = run(c).quantities["probes"]["centre"]["velocity_x"].get<double>();
     EXPECT_NEAR(centre, 24.25, 0.06 * 24.25) << model;
   }
@@ -483,53 +493,26 @@ report = false
 /// Gas that slows down in a channel does so as liquid does, by either method: where k was produced by
 /// differences across the walls they stopped it within seconds.
 TEST(Run, GasInAChannelHasTheFrictionOfItsWalls) {
-  const auto momentum_left = [](const char* model, const char* solver, const char* seconds) {
-    const Case c = parse_case(fmt::format(R"(
-[run]
-end_time = "{} s"
-[environment]
-gravity = ["0 m/s2", "0 m/s2", "0 m/s2"]
+  const auto momentum_left = [](const char* model, const char* solver, double seconds) {
+    const Case c = channel(fmt::format(R"(
 [fluid]
 viscosity = "0.0006 Pa s"
 [flow]
 solver = "{}"
 turbulence = "{}"
-[grid.x]
-points = ["0 m", "0.4 m"]
-cells = [4]
-[grid.y]
-points = ["-1 m", "1 m"]
-cells = [20]
-[grid.z]
-points = ["0 m", "0.4 m"]
-cells = [4]
-[boundary.x_min]
-type = "periodic"
-[boundary.x_max]
-type = "periodic"
-[boundary.z_min]
-type = "periodic"
-[boundary.z_max]
-type = "periodic"
-[[initial]]
-velocity = ["22 m/s", "0 m/s", "0 m/s"]
-k = "3 m2/s2"
-epsilon = "5 m2/s3"
-[output]
-report = false
 )",
-                                          seconds, solver, model),
-                              "channel");
+                                       solver, model),
+                           seconds, 22);
     return run(c).quantities["air_momentum_N_s"][0].get<double>() / (1.1839 * 0.32 * 22.0);
   };
   for (const char* model : {"k-epsilon", "k-omega-sst"}) {
-    const double liquid = momentum_left(model, "incompressible", "4"),
-                 gas = momentum_left(model, "compressible-piso", "4");
+    const double liquid = momentum_left(model, "incompressible", 4),
+                 gas = momentum_left(model, "compressible-piso", 4);
     EXPECT_LT(liquid, 0.9) << model;
     EXPECT_NEAR(1.0 - gas, 1.0 - liquid, 0.03 * (1.0 - liquid)) << model;
   }
-  const double liquid = momentum_left("k-epsilon", "incompressible", "0.5"),
-               gas = momentum_left("k-epsilon", "compressible", "0.5");
+  const double liquid = momentum_left("k-epsilon", "incompressible", 0.5),
+               gas = momentum_left("k-epsilon", "compressible", 0.5);
   EXPECT_NEAR(1.0 - gas, 1.0 - liquid, 0.06 * (1.0 - liquid));
 }
 

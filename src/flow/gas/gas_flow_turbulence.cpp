@@ -28,9 +28,9 @@ void GasFlow::measure_walls() {
     std::vector<Real>& distance = wall_distance_[static_cast<std::size_t>(d)];
     distance.assign(static_cast<std::size_t>(axis.n + kRealLanes), SolidDistance::kNone);  // whole registers
     for (int side = 0; side < 2; ++side) {
-      has_law_of_wall_[static_cast<std::size_t>(2 * d + side)] =
-          grid_.active(d) && boundaries_.is_wall(2 * d + side) && !boundaries_.has_patches(2 * d + side);
-      if (!grid_.active(d) || !boundaries_.is_wall(2 * d + side)) continue;
+      const int face = 2 * d + side;
+      if (!grid_.active(d) || !boundaries_.is_wall(face)) continue;
+      has_law_of_wall_[static_cast<std::size_t>(face)] = !boundaries_.has_patches(face);
       const double wall = side ? axis.face.back() : axis.face.front();
       for (std::size_t i = 0; i < axis.centre.size(); ++i)
         distance[i] = std::min(distance[i], Real(std::abs(axis.centre[i] - wall)));
@@ -77,19 +77,11 @@ void GasFlow::apply_walls(Real dt) {
     const Real k0 = std::max(next_[kK](i, j, k), kMinimalK),
                e0 = std::max(next_[kE](i, j, k), kMinimalDissipation);
     const WallShear shear = walls.shear(i, j, k, k0, nu);
-    SourcePoint p{};
-    p.k = p.k_carried = k0;
-    p.dissipation = p.dissipation_carried = e0;
-    p.strain2 = shear.strain2;
-    p.produced = shear.produced;
-    p.eddy_viscosity = wall_eddy_viscosity<Sst>(k0, e0, nu);
-    p.f1 = 1;
+    const Real nut = wall_eddy_viscosity<Sst>(k0, e0, nu);
+    const SourcePoint p{k0, e0, k0, e0, shear.strain2, shear.produced, nut, 0, Real(1), 0};
     const Real kn = advance_sources<Sst, false>(p, dt).k,
                dissipation = walls.dissipation<Sst>(i, j, k, kn, nu);
-    w_[kK](i, j, k) = kn;
-    w_[kE](i, j, k) = dissipation;
-    u_[kK](i, j, k) = rho * kn;
-    u_[kE](i, j, k) = rho * dissipation;
+    set_turbulence(w_, u_, i, j, k, kn, dissipation);
     eddy_viscosity_(i, j, k) = rho * wall_eddy_viscosity<Sst>(kn, dissipation, nu);
     walls.shear_by(eddy_viscosity_.view(), i, j, k, kn, nu, rho);
   });

@@ -36,6 +36,15 @@ BlockView<T> view_block(B& block) {
   return v;
 }
 
+/// Gives a cell k and e, in its primitive and its conserved values.
+inline void set_turbulence(Block& primitive, Block& conserved, int i, int j, int k_index, Real k, Real e) {
+  const Real rho = primitive[kRho](i, j, k_index);
+  primitive[kK](i, j, k_index) = k;
+  primitive[kE](i, j, k_index) = e;
+  conserved[kK](i, j, k_index) = rho * k;
+  conserved[kE](i, j, k_index) = rho * e;
+}
+
 /// Primitive state of a cell or of one side of a face; `p` is the difference to the reference pressure.
 /// `un` is the velocity along the direction of the sweep, `ut`, `us` across it.
 struct Primitive {

@@ -113,10 +113,7 @@ void CutGas::advance_turbulence(const CutCells& cut, bool sst, const Block& befo
       const Real nut = wall_eddy_viscosity<model>(k, e, nu);
       const SourcePoint p{k, e, k, e, 0, 0, nut, 0, Real(1), 0};
       const SourceResult r = advance_wall_sources<model>(grid_, cut, c, velocity, p, nu, dt);
-      w[kK](c.i, c.j, c.k) = r.k;
-      w[kE](c.i, c.j, c.k) = r.dissipation;
-      u[kK](c.i, c.j, c.k) = rho * r.k;
-      u[kE](c.i, c.j, c.k) = rho * r.dissipation;
+      set_turbulence(w, u, c.i, c.j, c.k, r.k, r.dissipation);
       eddy_viscosity(c.i, c.j, c.k) = rho * wall_eddy_viscosity<model>(r.k, r.dissipation, nu);
       if (model) f1(c.i, c.j, c.k) = 1;
     });
@@ -127,10 +124,7 @@ void CutGas::advance_turbulence(const CutCells& cut, bool sst, const Block& befo
     const GhostCell& g = cut.ghosts[static_cast<std::size_t>(n)];
     if (g.donors > 0) return;  // deep inside nothing happens
     eddy_viscosity(g.i, g.j, g.k) = 0;
-    for (const std::size_t c : {kK, kE}) {
-      w[c](g.i, g.j, g.k) = before[c](g.i, g.j, g.k);
-      u[c](g.i, g.j, g.k) = w[kRho](g.i, g.j, g.k) * before[c](g.i, g.j, g.k);
-    }
+    set_turbulence(w, u, g.i, g.j, g.k, before[kK](g.i, g.j, g.k), before[kE](g.i, g.j, g.k));
   });
 }
 

@@ -22,6 +22,9 @@ constexpr Real kPeak = Real(1) / 16;
 /// there.
 constexpr Real kHalfGoesOn = Real(0.02);
 
+/// Of a cell, in entries of a field with the steps of `f`.
+std::ptrdiff_t entry_of(const Cell& c, ConstFieldView f) { return c[0] + c[1] * f.sy + c[2] * f.sz; }
+
 /// Part of a cell whose gradient along an axis is the difference across a face: columns of fluid from face to
 /// face have the mean of both differences, columns that end at a wall that of their own face alone. open,
 /// across: open parts of this face and of the one across.
@@ -85,8 +88,6 @@ void for_each_way_on(const Grid& grid, const CutCells& cut, const Cell& cell, in
 void CutFlow::list_differences(const CutCells& cut, ConstFieldView p) {
   differences_of_.resize(cut.cells.size());
   differences_.resize(static_cast<std::size_t>(kMostDifferences) * cut.members.size());
-  const ConstFieldView at = carried();
-  const auto offset = [&](const Cell& c) { return c[0] + c[1] * at.sy + c[2] * at.sz; };
   for_each_index(static_cast<int>(cut.cells.size()), [&](int n) {
     const CutCell& carrier = cut.cells[static_cast<std::size_t>(n)];
     if (carrier.carrier != n) return;
@@ -104,7 +105,7 @@ void CutFlow::list_differences(const CutCells& cut, ConstFieldView p) {
           across[s] += sign < 0;
           const Real part =
               columns_at(open, Real(1) - cut.closed[s](across[0], across[1], across[2]), c.fluid);
-          first[of.faces++] = {offset({c.i, c.j, c.k}), offset(beyond), d,
+          first[of.faces++] = {entry_of({c.i, c.j, c.k}, p), entry_of(beyond, p), d,
                                sign * part * area * m.inv_distance[face[s]], sign * open * area * weight};
           total[s] += part * area;
         });
@@ -129,8 +130,6 @@ void CutFlow::list_differences(const CutCells& cut, ConstFieldView p) {
 /// step, so that the gradient is linear within it.
 void CutFlow::list_walls_at_edge(const CutCells& cut, const CutCell& c, ConstFieldView p, Difference* first,
                                  int& count) const {
-  const ConstFieldView at = carried();
-  const auto offset = [&](const Cell& cell) { return cell[0] + cell[1] * at.sy + cell[2] * at.sz; };
   const Cell cell{c.i, c.j, c.k};
   for (int d = 0; d < 3; ++d) {
     if (!grid_.active(d)) continue;
@@ -143,7 +142,8 @@ void CutFlow::list_walls_at_edge(const CutCells& cut, const CutCell& c, ConstFie
         c.edge * ends * face_area_of(grid_.metrics(), d, cell) * grid_.metrics(d).inv_width[cell[s]];
     for_each_way_on(grid_, cut, cell, d, ends > Real(0) ? upper : cell,
                     [&](Real part, const Cell& next, const Cell& after) {
-                      const std::ptrdiff_t here = offset(cell), beside = offset(next), behind = offset(after);
+                      const std::ptrdiff_t here = entry_of(cell, p), beside = entry_of(next, p),
+                                           behind = entry_of(after, p);
                       const Real ratio = ratio_of_distances(grid_, cell, next, after);
                       const Real continued = ratio * (p.origin[beside] - p.origin[behind]),
                                  step = p.origin[here] - p.origin[beside];
